@@ -1,0 +1,80 @@
+// Actor: the whole service without a network. Messages in, messages out.
+//
+// What a request goes through is the same for a gRPC call, for the command
+// line's --local mode, for benches and for fuzzers: convert and validate ->
+// estimate -> prepare -> generate. The gRPC services are thin over this class; it
+// knows nothing of gRPC, and the client links it for --local.
+//
+// Threads: every method may be called from any thread at any time. Errors are
+// absl::Status: violations for INVALID_ARGUMENT (core/base/violations.h), a
+// reason for NOT_FOUND (server/actor/error_reason.h).
+#ifndef TERRANE_SERVER_ACTOR_ACTOR_H_
+#define TERRANE_SERVER_ACTOR_ACTOR_H_
+
+#include <cstdint>
+#include <memory>
+#include <stop_token>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "core/terrain/terrain.h"
+#include "server/actor/limits.h"
+#include "terrane/v1/info.pb.h"
+#include "terrane/v1/raster.pb.h"
+#include "terrane/v1/terrain.pb.h"
+
+namespace terrane::server {
+
+// One admitted StreamTiles request. Immutable; tiles may be made in any order, by
+// several threads at a time, each with its own scratch.
+class TileJob {
+ public:
+  virtual ~TileJob() = default;
+
+  virtual const v1::StreamHeader& header() const = 0;
+  // Tiles of the request, and the index of the first one to send.
+  virtual std::int64_t total() const = 0;
+  virtual std::int64_t first() const = 0;
+  // Generates and encodes tile `index`, first() <= index < total().
+  virtual absl::Status MakeTile(std::int64_t index, std::stop_token stop,
+                                core::TileScratch* scratch,
+                                v1::HeightTile* tile) const = 0;
+};
+
+// A raster on its way in. Belongs to one thread at a time.
+class RasterUpload {
+ public:
+  virtual ~RasterUpload() = default;
+  // Takes the next message of the upload; the first one holds the header.
+  virtual absl::Status Add(const v1::UploadRasterRequest& part) = 0;
+  // Checks that all came, hashes and stores.
+  virtual absl::StatusOr<v1::UploadRasterResponse> Finish() = 0;
+};
+
+class Actor {
+ public:
+  virtual ~Actor() = default;
+
+  virtual absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
+      const v1::StreamTilesRequest& request) = 0;
+  virtual absl::StatusOr<v1::GetProfileResponse> GetProfile(
+      const v1::GetProfileRequest& request, std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::GetHeightsResponse> GetHeights(
+      const v1::GetHeightsRequest& request, std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::EstimateTilesResponse> EstimateTiles(
+      const v1::EstimateTilesRequest& request) = 0;
+  virtual absl::StatusOr<v1::GetPresetResponse> GetPreset(
+      const v1::GetPresetRequest& request) = 0;
+  virtual v1::GetServerInfoResponse GetServerInfo() = 0;
+
+  virtual std::unique_ptr<RasterUpload> BeginUpload() = 0;
+  virtual absl::StatusOr<v1::GetRasterResponse> GetRaster(
+      const v1::GetRasterRequest& request) = 0;
+};
+
+// `workers` is only reported (GetServerInfo).
+std::unique_ptr<Actor> MakeActor(const Limits& limits, int workers);
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_ACTOR_ACTOR_H_

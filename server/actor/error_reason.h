@@ -1,0 +1,31 @@
+// A machine-readable reason on a Status, which the service turns into an
+// ErrorInfo detail (proto/terrane/v1/common.proto). Threads: any.
+#ifndef TERRANE_SERVER_ACTOR_ERROR_REASON_H_
+#define TERRANE_SERVER_ACTOR_ERROR_REASON_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "absl/status/status.h"
+
+namespace terrane::server {
+
+struct ErrorReason {
+  std::string reason;  // "RASTER_NOT_FOUND", "PRESET_NOT_FOUND"
+  std::string key;     // "raster_id", "preset"
+  std::string value;
+};
+
+inline constexpr std::string_view kRasterNotFound = "RASTER_NOT_FOUND";
+inline constexpr std::string_view kPresetNotFound = "PRESET_NOT_FOUND";
+
+// NOT_FOUND with a reason.
+absl::Status NotFoundError(std::string message, ErrorReason reason);
+
+// The reason a status carries.
+std::optional<ErrorReason> ReasonOf(const absl::Status& status);
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_ACTOR_ERROR_REASON_H_

@@ -1,0 +1,28 @@
+// Every limit of the service in one place: read by validation, published by
+// InfoService.GetServerInfo, printed by `terrane-server --help`.
+#ifndef TERRANE_SERVER_ACTOR_LIMITS_H_
+#define TERRANE_SERVER_ACTOR_LIMITS_H_
+
+#include <cstdint>
+
+#include "core/grid/lattice_window.h"
+#include "core/terrain/validate.h"
+
+namespace terrane::server {
+
+struct Limits {
+  std::int64_t max_request_bytes = 1 << 20;
+  int max_level = core::kMaxLevel;
+  int max_tile_size = 1025;
+  std::int64_t max_stream_samples = std::int64_t{1} << 36;
+  int max_points = 100'000;
+  int max_profile_samples = 500'000;
+  core::SpecLimits recipe;
+  std::int64_t max_raster_samples = std::int64_t{1} << 26;
+  std::int64_t raster_store_bytes = std::int64_t{1} << 30;
+  int max_concurrent_streams = 64;
+};
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_ACTOR_LIMITS_H_
