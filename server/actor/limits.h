@@ -11,12 +11,12 @@
 namespace terrane::server {
 
 struct Limits {
-  std::int64_t max_request_bytes = 1 << 20;
+  std::int64_t max_request_bytes = 4 << 20;
   int max_level = core::kMaxLevel;
   int max_tile_size = 1025;
   std::int64_t max_stream_samples = std::int64_t{1} << 36;
   int max_points = 100'000;
-  int max_profile_samples = 500'000;
+  int max_profile_samples = 400'000;
   core::SpecLimits recipe;
   std::int64_t max_raster_samples = std::int64_t{1} << 26;
   std::int64_t raster_store_bytes = std::int64_t{1} << 30;
