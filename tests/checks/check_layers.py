@@ -47,14 +47,15 @@ LAYERS = (
     generator("tree"),
     generator("flower"),
     Layer("core/", FOUNDATION, GRPC + PROTOBUF + LOG + SOCKETS + FILES),
-    Layer("server/actor/", ("server/actor/", "server/convert/", "core/",
-                            "terrane/v1/"), GRPC + SOCKETS),
-    Layer("server/convert/", ("server/convert/", "server/actor/", "core/",
-                              "terrane/v1/"), GRPC + SOCKETS),
+    *(Layer(path, ("server/actor/", "server/convert/", "server/presets/",
+                   "core/", "terrane/v1/"), GRPC + SOCKETS)
+      for path in ("server/actor/", "server/convert/", "server/presets/")),
     Layer("server/", ("server/", "core/", "terrane/v1/")),
-    # The one exception: --local calls the service without a network.
-    Layer("client/local_backend", ("client/", "server/actor/", "terrane/v1/") +
-          LEAVES, GRPC + SOCKETS),
+    # The one exception: --local calls the service without a network. The actor's
+    # interface hands out the generator's scratch memory.
+    Layer("client/local_backend", ("client/", "server/actor/", "terrane/v1/",
+                                   "core/terrain/terrain.h") + LEAVES,
+          GRPC + SOCKETS),
     Layer("client/", ("client/", "terrane/v1/") + LEAVES),
     Layer("tests/core/", ("core/", "tests/"), GRPC + PROTOBUF + LOG + SOCKETS),
     Layer("tests/", ("core/", "server/", "client/", "terrane/v1/", "tests/")),
