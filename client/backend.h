@@ -1,0 +1,62 @@
+// Backend: whatever answers the API: a server across the network or the same
+// code in this process. The commands are written against it and cannot tell.
+//
+// Threads: one call at a time, from any thread; `stop` may be asked for from
+// any other. Errors: INVALID_ARGUMENT carries violations
+// (core/base/violations.h), CANCELLED means that `stop` was asked for,
+// UNAVAILABLE that nobody answers.
+#ifndef TERRANE_CLIENT_BACKEND_H_
+#define TERRANE_CLIENT_BACKEND_H_
+
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "core/grid/raster.h"
+#include "terrane/v1/info.pb.h"
+#include "terrane/v1/raster.pb.h"
+#include "terrane/v1/terrain.pb.h"
+
+namespace terrane::client {
+
+// Takes the header, once, before any tile.
+using OnHeader = std::function<absl::Status(const v1::StreamHeader&)>;
+// Takes the tiles in the order of their index. An error ends the stream and is
+// what StreamTiles answers.
+using OnTile = std::function<absl::Status(const v1::HeightTile&)>;
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+
+  // Tiles arrive verified (client/tile_verifier.h) and each exactly once, also
+  // when the connection was cut and resumed in between.
+  virtual absl::Status StreamTiles(const v1::StreamTilesRequest& request,
+                                   const OnHeader& on_header,
+                                   const OnTile& on_tile,
+                                   std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::GetProfileResponse> GetProfile(
+      const v1::GetProfileRequest& request, std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::GetHeightsResponse> GetHeights(
+      const v1::GetHeightsRequest& request, std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::EstimateTilesResponse> EstimateTiles(
+      const v1::EstimateTilesRequest& request, std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::GetPresetResponse> GetPreset(
+      const v1::GetPresetRequest& request, std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::GetServerInfoResponse> GetServerInfo(
+      std::stop_token stop) = 0;
+
+  // Uploads a raster whose posts without data are NaN, and answers its id. The
+  // backend keeps the raster: a server that has evicted it gets it again.
+  virtual absl::StatusOr<std::string> UploadRaster(
+      std::shared_ptr<const core::Raster> raster, std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::GetRasterResponse> GetRaster(
+      const v1::GetRasterRequest& request, std::stop_token stop) = 0;
+};
+
+}  // namespace terrane::client
+
+#endif  // TERRANE_CLIENT_BACKEND_H_

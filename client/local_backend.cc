@@ -1,0 +1,171 @@
+#include "client/local_backend.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "client/raster_upload.h"
+#include "client/tile_verifier.h"
+#include "core/terrain/terrain.h"
+
+namespace terrane::client {
+namespace {
+
+// Makes the tiles of a job on several threads and hands them out in order. A
+// thread that is too far ahead of the reader waits.
+class OrderedTiles {
+ public:
+  OrderedTiles(std::shared_ptr<const server::TileJob> job, int threads)
+      : job_(std::move(job)),
+        next_to_make_(job_->first()),
+        next_to_take_(job_->first()),
+        slots_(static_cast<std::size_t>(threads) * 2) {
+    for (int i = 0; i < threads; ++i) {
+      threads_.emplace_back([this](std::stop_token stop) { Make(stop); });
+    }
+  }
+
+  // Stops the threads, waiting for the tiles in work to notice.
+  ~OrderedTiles() {
+    for (std::jthread& thread : threads_) thread.request_stop();
+  }
+
+  // The next tile; CANCELLED when `stop` is asked for.
+  absl::StatusOr<v1::HeightTile> Take(std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    Slot& slot = SlotOf(next_to_take_);
+    if (!changed_.wait(lock, stop, [&] { return slot.filled; })) {
+      return absl::CancelledError("interrupted");
+    }
+    slot.filled = false;
+    ++next_to_take_;
+    absl::Status status = std::move(slot.status);
+    v1::HeightTile tile = std::move(slot.tile);
+    lock.unlock();
+    changed_.notify_all();
+    if (!status.ok()) return status;
+    return tile;
+  }
+
+ private:
+  struct Slot {
+    bool filled = false;
+    absl::Status status;
+    v1::HeightTile tile;
+  };
+
+  Slot& SlotOf(std::int64_t index) {
+    return slots_[static_cast<std::size_t>(index) % slots_.size()];
+  }
+
+  void Make(std::stop_token stop) {
+    core::TileScratch scratch;
+    const auto slot_count = static_cast<std::int64_t>(slots_.size());
+    while (true) {
+      std::unique_lock lock(mutex_);
+      const bool may_go = changed_.wait(lock, stop, [&] {
+        return next_to_make_ >= job_->total() ||
+               next_to_make_ < next_to_take_ + slot_count;
+      });
+      if (!may_go || next_to_make_ >= job_->total()) return;
+      const std::int64_t index = next_to_make_++;
+      lock.unlock();
+
+      v1::HeightTile tile;
+      absl::Status status = job_->MakeTile(index, stop, &scratch, &tile);
+
+      lock.lock();
+      Slot& slot = SlotOf(index);
+      slot.filled = true;
+      slot.status = std::move(status);
+      slot.tile = std::move(tile);
+      lock.unlock();
+      changed_.notify_all();
+    }
+  }
+
+  std::shared_ptr<const server::TileJob> job_;
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::int64_t next_to_make_;
+  std::int64_t next_to_take_;
+  std::vector<Slot> slots_;
+  // Last, so that the threads end before what they use goes.
+  std::vector<std::jthread> threads_;
+};
+
+}  // namespace
+
+LocalBackend::LocalBackend(int threads)
+    : threads_(std::max(threads, 1)),
+      actor_(server::MakeActor(server::Limits(), threads_)) {}
+
+absl::Status LocalBackend::StreamTiles(const v1::StreamTilesRequest& request,
+                                       const OnHeader& on_header,
+                                       const OnTile& on_tile,
+                                       std::stop_token stop) {
+  const absl::StatusOr<std::shared_ptr<const server::TileJob>> job =
+      actor_->OpenTiles(request);
+  if (!job.ok()) return job.status();
+  TileVerifier verifier(request);
+  absl::Status status = verifier.CheckHeader((*job)->header());
+  if (status.ok()) status = on_header((*job)->header());
+  if (!status.ok()) return status;
+
+  OrderedTiles tiles(*job, threads_);
+  while (verifier.next_index() < (*job)->total()) {
+    const absl::StatusOr<v1::HeightTile> tile = tiles.Take(stop);
+    if (!tile.ok()) return tile.status();
+    status = verifier.CheckTile(*tile);
+    if (status.ok()) status = on_tile(*tile);
+    if (!status.ok()) return status;
+  }
+  return verifier.CheckEnd();
+}
+
+absl::StatusOr<v1::GetProfileResponse> LocalBackend::GetProfile(
+    const v1::GetProfileRequest& request, std::stop_token stop) {
+  return actor_->GetProfile(request, stop);
+}
+
+absl::StatusOr<v1::GetHeightsResponse> LocalBackend::GetHeights(
+    const v1::GetHeightsRequest& request, std::stop_token stop) {
+  return actor_->GetHeights(request, stop);
+}
+
+absl::StatusOr<v1::EstimateTilesResponse> LocalBackend::EstimateTiles(
+    const v1::EstimateTilesRequest& request, std::stop_token) {
+  return actor_->EstimateTiles(request);
+}
+
+absl::StatusOr<v1::GetPresetResponse> LocalBackend::GetPreset(
+    const v1::GetPresetRequest& request, std::stop_token) {
+  return actor_->GetPreset(request);
+}
+
+absl::StatusOr<v1::GetServerInfoResponse> LocalBackend::GetServerInfo(
+    std::stop_token) {
+  return actor_->GetServerInfo();
+}
+
+absl::StatusOr<std::string> LocalBackend::UploadRaster(
+    std::shared_ptr<const core::Raster> raster, std::stop_token) {
+  const std::unique_ptr<server::RasterUpload> upload = actor_->BeginUpload();
+  const absl::Status sent = SendRaster(
+      *raster,
+      [&](const v1::UploadRasterRequest& part) { return upload->Add(part); });
+  if (!sent.ok()) return sent;
+  absl::StatusOr<v1::UploadRasterResponse> response = upload->Finish();
+  if (!response.ok()) return response.status();
+  return response->raster_id();
+}
+
+absl::StatusOr<v1::GetRasterResponse> LocalBackend::GetRaster(
+    const v1::GetRasterRequest& request, std::stop_token) {
+  return actor_->GetRaster(request);
+}
+
+}  // namespace terrane::client

@@ -1,0 +1,48 @@
+// LocalBackend: the API in this process, without a network: the server's own
+// Actor, its tiles made by several threads and delivered in order.
+//
+// This pair of files is the one place of client/ that includes server/: the
+// Actor (server/actor) holds no gRPC. Memory: at most two tiles a thread wait
+// for delivery, however long the stream.
+#ifndef TERRANE_CLIENT_LOCAL_BACKEND_H_
+#define TERRANE_CLIENT_LOCAL_BACKEND_H_
+
+#include <memory>
+
+#include "client/backend.h"
+#include "server/actor/actor.h"
+
+namespace terrane::client {
+
+class LocalBackend : public Backend {
+ public:
+  // `threads` make tiles, at least 1.
+  explicit LocalBackend(int threads);
+
+  absl::Status StreamTiles(const v1::StreamTilesRequest& request,
+                           const OnHeader& on_header, const OnTile& on_tile,
+                           std::stop_token stop) override;
+  absl::StatusOr<v1::GetProfileResponse> GetProfile(
+      const v1::GetProfileRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetHeightsResponse> GetHeights(
+      const v1::GetHeightsRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::EstimateTilesResponse> EstimateTiles(
+      const v1::EstimateTilesRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetPresetResponse> GetPreset(
+      const v1::GetPresetRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetServerInfoResponse> GetServerInfo(
+      std::stop_token stop) override;
+  absl::StatusOr<std::string> UploadRaster(
+      std::shared_ptr<const core::Raster> raster,
+      std::stop_token stop) override;
+  absl::StatusOr<v1::GetRasterResponse> GetRaster(
+      const v1::GetRasterRequest& request, std::stop_token stop) override;
+
+ private:
+  int threads_;
+  std::unique_ptr<server::Actor> actor_;
+};
+
+}  // namespace terrane::client
+
+#endif  // TERRANE_CLIENT_LOCAL_BACKEND_H_

@@ -1,0 +1,86 @@
+// RemoteBackend: the API of a server across the network, over gRPC.
+//
+// What it adds to the generated stubs: errors with their violations; every tile
+// verified; a cut stream resumed at the tile that is missing, with bounded,
+// jittered waits; a raster that the server has evicted uploaded again, once a
+// call. A server that was never reached is given up within a second.
+#ifndef TERRANE_CLIENT_REMOTE_BACKEND_H_
+#define TERRANE_CLIENT_REMOTE_BACKEND_H_
+
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "client/backend.h"
+#include "client/status_details.h"
+#include "client/tile_verifier.h"
+#include "terrane/v1/info.grpc.pb.h"
+#include "terrane/v1/raster.grpc.pb.h"
+#include "terrane/v1/terrain.grpc.pb.h"
+
+namespace terrane::client {
+
+class RemoteBackend : public Backend {
+ public:
+  // `target` is "host:port". Connects with the first call.
+  explicit RemoteBackend(const std::string& target);
+
+  absl::Status StreamTiles(const v1::StreamTilesRequest& request,
+                           const OnHeader& on_header, const OnTile& on_tile,
+                           std::stop_token stop) override;
+  absl::StatusOr<v1::GetProfileResponse> GetProfile(
+      const v1::GetProfileRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetHeightsResponse> GetHeights(
+      const v1::GetHeightsRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::EstimateTilesResponse> EstimateTiles(
+      const v1::EstimateTilesRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetPresetResponse> GetPreset(
+      const v1::GetPresetRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetServerInfoResponse> GetServerInfo(
+      std::stop_token stop) override;
+  absl::StatusOr<std::string> UploadRaster(
+      std::shared_ptr<const core::Raster> raster,
+      std::stop_token stop) override;
+  absl::StatusOr<v1::GetRasterResponse> GetRaster(
+      const v1::GetRasterRequest& request, std::stop_token stop) override;
+
+ private:
+  // What became of one try of a call.
+  struct Attempt {
+    RemoteError error;
+    // Something new came before it failed: the server is there.
+    bool progressed = false;
+    // The failure is the caller's own (a full disk), so trying again is futile.
+    bool final = false;
+  };
+  enum class CallKind { kUnary, kStream };
+
+  absl::Status Run(CallKind kind, const std::function<Attempt()>& attempt,
+                   std::stop_token stop);
+  bool Wait(const RemoteError& error, int failures, std::stop_token stop);
+  absl::Status UploadAgain(const std::string& raster_id, std::stop_token stop);
+  Attempt UploadOnce(const core::Raster& raster, std::stop_token stop,
+                     std::string* raster_id);
+  Attempt StreamOnce(const v1::StreamTilesRequest& request,
+                     const OnHeader& on_header, const OnTile& on_tile,
+                     std::stop_token stop, TileVerifier* verifier);
+
+  // One unary call; `method` is a member of the stub.
+  template <typename Response, typename Stub, typename Method, typename Request>
+  absl::StatusOr<Response> Unary(Stub* stub, Method method,
+                                 const Request& request, std::stop_token stop);
+
+  std::string target_;
+  std::unique_ptr<v1::TerrainService::Stub> terrain_;
+  std::unique_ptr<v1::RasterService::Stub> raster_;
+  std::unique_ptr<v1::InfoService::Stub> info_;
+  // Rasters uploaded so far, by id.
+  std::map<std::string, std::shared_ptr<const core::Raster>> rasters_;
+  // Jitter of the waits; never touches a height.
+  std::mt19937 jitter_{std::random_device{}()};
+};
+
+}  // namespace terrane::client
+
+#endif  // TERRANE_CLIENT_REMOTE_BACKEND_H_

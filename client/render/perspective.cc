@@ -1,0 +1,341 @@
+#include "client/render/perspective.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace terrane::client {
+namespace {
+
+constexpr Rgb kPaper{1, 1, 1};
+constexpr Rgb kWall{0.62, 0.57, 0.52};
+constexpr Rgb kNoLandWall{0.36, 0.53, 0.70};
+
+// Every pixel is the mean of this many by this many.
+constexpr int kSupersampling = 3;
+// Posts a side that are drawn; more would be smaller than a pixel.
+constexpr std::int64_t kMaxPosts = 1400;
+constexpr double kMarginShare = 0.03;
+// The block's floor lies this share of the relief below the lowest height.
+constexpr double kFloorShare = 0.25;
+constexpr double kReliefShare = 1.0 / 6;
+
+// A corner of a triangle: where on the canvas, how far away, what colour.
+struct Corner {
+  double x = 0;
+  double y = 0;
+  double depth = 0;
+  Rgb colour;
+};
+
+// The canvas with a depth for every pixel; the nearer one stays.
+class DepthCanvas {
+ public:
+  DepthCanvas(int width, int height)
+      : width_(width),
+        height_(height),
+        colours_(
+            static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+            kPaper),
+        depths_(colours_.size(), std::numeric_limits<double>::infinity()) {}
+
+  void FillTriangle(const Corner& a, const Corner& b, const Corner& c) {
+    const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+    if (area == 0) return;
+    const auto [min_x, max_x] = std::minmax({a.x, b.x, c.x});
+    const auto [min_y, max_y] = std::minmax({a.y, b.y, c.y});
+    for (int y = First(min_y); y <= Last(max_y, height_); ++y) {
+      for (int x = First(min_x); x <= Last(max_x, width_); ++x) {
+        const double px = x + 0.5;
+        const double py = y + 0.5;
+        const double wb =
+            ((px - a.x) * (c.y - a.y) - (c.x - a.x) * (py - a.y)) / area;
+        const double wc =
+            ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / area;
+        const double wa = 1 - wb - wc;
+        if (wa < 0 || wb < 0 || wc < 0) continue;
+        const double depth = wa * a.depth + wb * b.depth + wc * c.depth;
+        const std::size_t at =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+            static_cast<std::size_t>(x);
+        if (depth >= depths_[at]) continue;
+        depths_[at] = depth;
+        colours_[at] = Mixed(a.colour, wa, b.colour, wb, c.colour, wc);
+      }
+    }
+  }
+
+  void FillQuad(const Corner& a, const Corner& b, const Corner& c,
+                const Corner& d) {
+    FillTriangle(a, b, c);
+    FillTriangle(b, c, d);
+  }
+
+  // Means of kSupersampling squares.
+  Picture Shrunk() const {
+    Canvas canvas(width_ / kSupersampling, height_ / kSupersampling, kPaper);
+    constexpr double kShare = 1.0 / (kSupersampling * kSupersampling);
+    for (int y = 0; y < canvas.height(); ++y) {
+      for (int x = 0; x < canvas.width(); ++x) {
+        Rgb sum;
+        for (int k = 0; k < kSupersampling * kSupersampling; ++k) {
+          const int row = y * kSupersampling + k / kSupersampling;
+          const int column = x * kSupersampling + k % kSupersampling;
+          const Rgb& one = colours_[static_cast<std::size_t>(row) *
+                                        static_cast<std::size_t>(width_) +
+                                    static_cast<std::size_t>(column)];
+          sum = {sum.red + one.red, sum.green + one.green, sum.blue + one.blue};
+        }
+        canvas.SetPixel(
+            x, y, {sum.red * kShare, sum.green * kShare, sum.blue * kShare});
+      }
+    }
+    return canvas.picture();
+  }
+
+ private:
+  static int First(double at) {
+    return std::max(static_cast<int>(std::floor(at - 0.5)), 0);
+  }
+  static int Last(double at, int count) {
+    return std::min(static_cast<int>(std::ceil(at)), count - 1);
+  }
+  static Rgb Mixed(const Rgb& a, double wa, const Rgb& b, double wb,
+                   const Rgb& c, double wc) {
+    return {wa * a.red + wb * b.red + wc * c.red,
+            wa * a.green + wb * b.green + wc * c.green,
+            wa * a.blue + wb * b.blue + wc * c.blue};
+  }
+
+  int width_;
+  int height_;
+  std::vector<Rgb> colours_;
+  std::vector<double> depths_;
+};
+
+// The posts that are drawn, with their colours.
+struct Block {
+  std::int64_t columns = 0;
+  std::int64_t rows = 0;
+  double step_x = 1;  // ground distance of drawn posts
+  double step_y = 1;
+  std::vector<double> heights;  // with the water as its surface
+  std::vector<Rgb> colours;
+  std::vector<bool> water;
+  double minimum = 0;
+  double maximum = 0;
+
+  std::size_t At(std::int64_t i, std::int64_t j) const {
+    return static_cast<std::size_t>(j * columns + i);
+  }
+  double relief() const { return maximum - minimum; }
+  double longer_side() const {
+    return std::max(step_x * static_cast<double>(columns - 1),
+                    step_y * static_cast<double>(rows - 1));
+  }
+};
+
+// Every step-th post; a thinned field is shaded as it is drawn.
+std::vector<float> Thinned(const core::HeightView& heights, std::int64_t step,
+                           Block* block) {
+  block->columns = (heights.width - 1) / step + 1;
+  block->rows = (heights.height - 1) / step + 1;
+  std::vector<float> values;
+  values.reserve(static_cast<std::size_t>(block->columns * block->rows));
+  for (std::int64_t j = 0; j < block->rows; ++j) {
+    for (std::int64_t i = 0; i < block->columns; ++i) {
+      values.push_back(heights.At(i * step, j * step));
+    }
+  }
+  return values;
+}
+
+Block MakeBlock(const core::HeightView& heights, const core::GroundScale& scale,
+                const PerspectiveOptions& options) {
+  const std::int64_t step =
+      (std::max(heights.width, heights.height) + kMaxPosts - 1) / kMaxPosts;
+  Block block;
+  const std::vector<float> values = Thinned(heights, step, &block);
+  const core::GroundSpacing& spacing = scale.Row(heights.height / 2);
+  block.step_x = spacing.x * static_cast<double>(step);
+  block.step_y = spacing.y * static_cast<double>(step);
+  const core::HeightView view{block.columns, block.rows, values};
+  const TintRange range = TintRangeOf(view, options.water_level);
+  const TintRange whole = TintRangeOf(view, std::nullopt);
+  block.minimum = options.water_level.has_value()
+                      ? std::max(whole.minimum, *options.water_level)
+                      : whole.minimum;
+  block.maximum = std::max(whole.maximum, block.minimum);
+
+  std::vector<float> shade(values.size());
+  // The light must see the relief that the viewer sees.
+  const double exaggeration = options.exaggeration.value_or(
+      block.relief() > 0 ? kReliefShare * block.longer_side() / block.relief()
+                         : 1);
+  core::Hillshade(
+      view, core::GroundScale(core::GroundSpacing{block.step_x, block.step_y}),
+      options.light, exaggeration, shade);
+  for (std::size_t at = 0; at < values.size(); ++at) {
+    const double height = values[at];
+    const bool water =
+        options.water_level.has_value() && height < *options.water_level;
+    block.water.push_back(water);
+    block.heights.push_back(water ? *options.water_level : height);
+    block.colours.push_back(
+        water ? WaterTint(*options.water_level - height, range)
+              : Lit(LandTint(height, range), shade[at], options.light.up));
+  }
+  return block;
+}
+
+// Ground to canvas by a parallel projection; fitted to the canvas's width.
+class View {
+ public:
+  View(const Block& block, const PerspectiveOptions& options,
+       double exaggeration)
+      : block_(block), exaggeration_(exaggeration) {
+    const double turn = options.turn_deg * std::numbers::pi / 180;
+    const double tilt = options.tilt_deg * std::numbers::pi / 180;
+    turn_cos_ = std::cos(turn);
+    turn_sin_ = std::sin(turn);
+    tilt_cos_ = std::cos(tilt);
+    tilt_sin_ = std::sin(tilt);
+    floor_ = block.minimum -
+             kFloorShare * std::max(block.relief(), 1e-9 * block.longer_side());
+    Fit(options.width * kSupersampling);
+  }
+
+  double floor() const { return floor_; }
+  int canvas_height() const { return canvas_height_; }
+
+  Corner Project(std::int64_t i, std::int64_t j, double height,
+                 const Rgb& colour) const {
+    const Corner raw = Rotated(i, j, height);
+    return {(raw.x - left_) * pixels_ + margin_,
+            (raw.y - top_) * pixels_ + margin_, raw.depth, colour};
+  }
+
+ private:
+  // y grows downwards, depth away from the viewer.
+  Corner Rotated(std::int64_t i, std::int64_t j, double height) const {
+    const double east = block_.step_x * static_cast<double>(i);
+    const double south = block_.step_y * static_cast<double>(j);
+    const double up = exaggeration_ * (height - block_.minimum);
+    const double right = east * turn_cos_ + south * turn_sin_;
+    const double near = south * turn_cos_ - east * turn_sin_;
+    return {right,
+            near * tilt_sin_ - up * tilt_cos_,
+            -near * tilt_cos_ - up * tilt_sin_,
+            {}};
+  }
+
+  void Fit(int canvas_width) {
+    double right = -std::numeric_limits<double>::infinity();
+    double bottom = right;
+    left_ = top_ = -right;
+    const auto include = [&](const Corner& corner) {
+      left_ = std::min(left_, corner.x);
+      right = std::max(right, corner.x);
+      top_ = std::min(top_, corner.y);
+      bottom = std::max(bottom, corner.y);
+    };
+    for (const std::int64_t j : {std::int64_t{0}, block_.rows - 1}) {
+      for (const std::int64_t i : {std::int64_t{0}, block_.columns - 1}) {
+        include(Rotated(i, j, floor_));
+      }
+    }
+    for (std::int64_t j = 0; j < block_.rows; ++j) {
+      for (std::int64_t i = 0; i < block_.columns; ++i) {
+        const double height = block_.heights[block_.At(i, j)];
+        if (!std::isnan(height)) include(Rotated(i, j, height));
+      }
+    }
+    margin_ = kMarginShare * canvas_width;
+    const double extent = std::max(right - left_, 1e-9);
+    pixels_ = (canvas_width - 2 * margin_) / extent;
+    canvas_height_ =
+        static_cast<int>(std::ceil((bottom - top_) * pixels_ + 2 * margin_)) /
+        kSupersampling * kSupersampling;
+  }
+
+  const Block& block_;
+  double exaggeration_;
+  double turn_cos_, turn_sin_, tilt_cos_, tilt_sin_;
+  double floor_;
+  double left_, top_;
+  double pixels_ = 1;
+  double margin_ = 0;
+  int canvas_height_ = 0;
+};
+
+void DrawTop(const Block& block, const View& view, DepthCanvas* canvas) {
+  const auto corner = [&](std::int64_t i, std::int64_t j) {
+    const std::size_t at = block.At(i, j);
+    return view.Project(i, j, block.heights[at], block.colours[at]);
+  };
+  for (std::int64_t j = 0; j + 1 < block.rows; ++j) {
+    for (std::int64_t i = 0; i + 1 < block.columns; ++i) {
+      const std::array<Corner, 4> corners = {corner(i, j), corner(i + 1, j),
+                                             corner(i, j + 1),
+                                             corner(i + 1, j + 1)};
+      // A missing post leaves a hole.
+      const bool whole =
+          std::none_of(corners.begin(), corners.end(),
+                       [](const Corner& one) { return std::isnan(one.y); });
+      if (whole) {
+        canvas->FillQuad(corners[0], corners[1], corners[2], corners[3]);
+      }
+    }
+  }
+}
+
+// The wall under the edge between two neighbouring posts, `lit` brighter or
+// darker by its side.
+void DrawWall(const Block& block, const View& view, std::int64_t i0,
+              std::int64_t j0, std::int64_t i1, std::int64_t j1, double lit,
+              DepthCanvas* canvas) {
+  const double h0 = block.heights[block.At(i0, j0)];
+  const double h1 = block.heights[block.At(i1, j1)];
+  if (std::isnan(h0) || std::isnan(h1)) return;
+  const bool water = block.water[block.At(i0, j0)];
+  const Rgb colour = Mix({0, 0, 0}, water ? kNoLandWall : kWall, lit);
+  const Rgb foot = Mix({0, 0, 0}, colour, 0.8);
+  canvas->FillQuad(view.Project(i0, j0, h0, colour),
+                   view.Project(i1, j1, h1, colour),
+                   view.Project(i0, j0, view.floor(), foot),
+                   view.Project(i1, j1, view.floor(), foot));
+}
+
+void DrawWalls(const Block& block, const View& view, DepthCanvas* canvas) {
+  const std::int64_t last_row = block.rows - 1;
+  const std::int64_t last_column = block.columns - 1;
+  for (std::int64_t i = 0; i < last_column; ++i) {
+    DrawWall(block, view, i, 0, i + 1, 0, 0.9, canvas);
+    DrawWall(block, view, i, last_row, i + 1, last_row, 0.9, canvas);
+  }
+  for (std::int64_t j = 0; j < last_row; ++j) {
+    DrawWall(block, view, 0, j, 0, j + 1, 1.0, canvas);
+    DrawWall(block, view, last_column, j, last_column, j + 1, 0.72, canvas);
+  }
+}
+
+}  // namespace
+
+PerspectivePicture RenderPerspective(const core::HeightView& heights,
+                                     const core::GroundScale& scale,
+                                     const PerspectiveOptions& options) {
+  const Block block = MakeBlock(heights, scale, options);
+  const double exaggeration = options.exaggeration.value_or(
+      block.relief() > 0 ? kReliefShare * block.longer_side() / block.relief()
+                         : 1);
+  const View view(block, options, exaggeration);
+  DepthCanvas canvas(options.width * kSupersampling, view.canvas_height());
+  DrawTop(block, view, &canvas);
+  DrawWalls(block, view, &canvas);
+  return {canvas.Shrunk(), exaggeration};
+}
+
+}  // namespace terrane::client

@@ -1,0 +1,70 @@
+#include "client/status_details.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "core/base/violations.h"
+#include "terrane/v1/common.pb.h"
+
+namespace terrane::client {
+namespace {
+
+// No server asks for more than this in earnest.
+constexpr std::int64_t kMaxRetryDelaySeconds = 3600;
+
+// The details travel under the type URLs of google.rpc, whose field numbers the
+// messages of terrane.v1 have; so the name after the last slash tells them
+// apart.
+std::string_view TypeName(const google::protobuf::Any& detail) {
+  const std::string_view url = detail.type_url();
+  return url.substr(url.rfind('/') + 1);
+}
+
+void AddDetail(const google::protobuf::Any& detail,
+               core::Violations* violations, RemoteError* error) {
+  const std::string_view type = TypeName(detail);
+  if (type == "google.rpc.BadRequest") {
+    v1::BadRequest bad_request;
+    if (!bad_request.ParseFromString(detail.value())) return;
+    for (const v1::FieldViolation& violation : bad_request.field_violations()) {
+      violations->Add(violation.field(), violation.description());
+    }
+  } else if (type == "google.rpc.ErrorInfo") {
+    v1::ErrorInfo info;
+    if (!info.ParseFromString(detail.value())) return;
+    error->reason = info.reason();
+    const auto raster = info.metadata().find("raster_id");
+    if (raster != info.metadata().end()) error->raster_id = raster->second;
+  } else if (type == "google.rpc.RetryInfo") {
+    v1::RetryInfo retry;
+    if (!retry.ParseFromString(detail.value())) return;
+    const std::int64_t seconds = std::clamp<std::int64_t>(
+        retry.retry_delay().seconds(), 0, kMaxRetryDelaySeconds);
+    error->retry_delay = std::chrono::milliseconds(
+        seconds * 1000 + retry.retry_delay().nanos() / 1'000'000);
+  }
+}
+
+}  // namespace
+
+RemoteError DecodeStatus(const grpc::Status& status) {
+  RemoteError error;
+  if (status.ok()) return error;
+  // gRPC's codes and Abseil's are the same numbers.
+  error.status =
+      absl::Status(static_cast<absl::StatusCode>(status.error_code()),
+                   status.error_message());
+  v1::ErrorStatus details;
+  if (!details.ParseFromString(status.error_details())) return error;
+  core::Violations violations;
+  for (const google::protobuf::Any& detail : details.details()) {
+    AddDetail(detail, &violations, &error);
+  }
+  if (status.error_code() == grpc::StatusCode::INVALID_ARGUMENT &&
+      !violations.empty()) {
+    error.status = violations.ToStatus();
+  }
+  return error;
+}
+
+}  // namespace terrane::client
