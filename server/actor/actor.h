@@ -2,8 +2,8 @@
 //
 // What a request goes through is the same for a gRPC call, for the command
 // line's --local mode, for benches and for fuzzers: convert and validate ->
-// estimate -> prepare -> generate. The gRPC services are thin over this class; it
-// knows nothing of gRPC, and the client links it for --local.
+// estimate -> prepare -> generate. The gRPC services are thin over this class;
+// it knows nothing of gRPC, and the client links it for --local.
 //
 // Threads: every method may be called from any thread at any time. Errors are
 // absl::Status: violations for INVALID_ARGUMENT (core/base/violations.h), a
@@ -25,8 +25,8 @@
 
 namespace terrane::server {
 
-// One admitted StreamTiles request. Immutable; tiles may be made in any order, by
-// several threads at a time, each with its own scratch.
+// One admitted StreamTiles request. Immutable; tiles may be made in any order,
+// by several threads at a time, each with its own scratch.
 class TileJob {
  public:
   virtual ~TileJob() = default;

@@ -1,0 +1,292 @@
+#include "server/actor/actor.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/simd_target.h"
+#include "core/base/violations.h"
+#include "core/terrain/spec_checks.h"
+#include "server/actor/cost_meter.h"
+#include "server/actor/error_reason.h"
+#include "server/actor/presets.h"
+#include "server/actor/raster_store.h"
+#include "server/actor/raster_upload.h"
+#include "server/actor/terrain_cache.h"
+#include "server/actor/tile_job.h"
+#include "server/convert/request_plan.h"
+#include "server/convert/terrain_convert.h"
+
+namespace terrane::server {
+namespace {
+
+// Terrains kept ready, and the rasters that they may hold beyond the store.
+constexpr std::size_t kMaxTerrains = 64;
+
+// A request's terrain as read: a valid spec only when no violation was added.
+struct ReadChoice {
+  v1::TerrainRecipe recipe;  // of the preset, with the seed asked for
+  ReadRecipe read;
+};
+
+absl::Status RasterNotFound(const std::string& raster_id) {
+  return NotFoundError("the raster is not (or no longer) kept; upload it again",
+                       {std::string(kRasterNotFound), "raster_id", raster_id});
+}
+
+class TerrainActor : public Actor {
+ public:
+  TerrainActor(const Limits& limits, int workers)
+      : limits_(limits),
+        workers_(workers),
+        rasters_(limits.raster_store_bytes),
+        terrains_(kMaxTerrains, limits.raster_store_bytes),
+        meter_(std::make_shared<CostMeter>()) {}
+
+  absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
+      const v1::StreamTilesRequest& request) override;
+  absl::StatusOr<v1::GetProfileResponse> GetProfile(
+      const v1::GetProfileRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetHeightsResponse> GetHeights(
+      const v1::GetHeightsRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::EstimateTilesResponse> EstimateTiles(
+      const v1::EstimateTilesRequest& request) override;
+  absl::StatusOr<v1::GetPresetResponse> GetPreset(
+      const v1::GetPresetRequest& request) override;
+  v1::GetServerInfoResponse GetServerInfo() override;
+  std::unique_ptr<RasterUpload> BeginUpload() override {
+    return MakeRasterUpload(limits_, &rasters_);
+  }
+  absl::StatusOr<v1::GetRasterResponse> GetRaster(
+      const v1::GetRasterRequest& request) override;
+
+ private:
+  struct PlannedTiles {
+    std::shared_ptr<const PreparedTerrain> prepared;
+    TilePlan plan;
+  };
+
+  // Finds and converts the terrain of a request. What is not found is answered
+  // at once, NOT_FOUND, since nothing that depends on it can be checked;
+  // everything else adds violations.
+  absl::StatusOr<ReadChoice> Read(const v1::TerrainChoice& choice,
+                                  const std::string& prefix,
+                                  core::Violations* violations);
+  absl::StatusOr<PlannedTiles> Plan(const v1::StreamTilesRequest& request,
+                                    const std::string& prefix);
+
+  const Limits limits_;
+  const int workers_;
+  RasterStore rasters_;
+  TerrainCache terrains_;
+  const std::shared_ptr<CostMeter> meter_;
+};
+
+// The spec to plan with, or null when it has violations.
+const core::TerrainSpec* ValidSpec(const ReadChoice& choice,
+                                   const core::Violations& violations) {
+  return violations.empty() ? &choice.read.spec : nullptr;
+}
+
+absl::StatusOr<ReadChoice> TerrainActor::Read(const v1::TerrainChoice& choice,
+                                              const std::string& prefix,
+                                              core::Violations* violations) {
+  ReadChoice result;
+  std::string recipe_prefix = prefix + "terrain.recipe.";
+  switch (choice.choice_case()) {
+    case v1::TerrainChoice::kRecipe:
+      result.recipe = choice.recipe();
+      break;
+    case v1::TerrainChoice::kPreset: {
+      const auto preset = FindPreset(choice.preset());
+      if (!preset.ok()) return preset.status();
+      result.recipe = (*preset)->recipe();
+      recipe_prefix = prefix + "terrain.preset.";
+      break;
+    }
+    case v1::TerrainChoice::CHOICE_NOT_SET:
+      violations->Add(prefix + "terrain",
+                      "must hold a recipe or a preset, got neither");
+      return result;
+  }
+  if (choice.has_seed()) result.recipe.set_seed(choice.seed());
+  result.read = ReadTerrainRecipe(result.recipe, &rasters_, limits_.recipe,
+                                  recipe_prefix, violations);
+  if (!result.read.missing_raster.empty() && violations->empty()) {
+    return RasterNotFound(result.read.missing_raster);
+  }
+  return result;
+}
+
+absl::StatusOr<TerrainActor::PlannedTiles> TerrainActor::Plan(
+    const v1::StreamTilesRequest& request, const std::string& prefix) {
+  core::Violations violations;
+  const auto choice = Read(request.terrain(), prefix, &violations);
+  if (!choice.ok()) return choice.status();
+  PlannedTiles planned;
+  planned.plan = PlanTiles(request, ValidSpec(*choice, violations), limits_,
+                           prefix, &violations);
+  if (!violations.empty()) return violations.ToStatus();
+  auto prepared = terrains_.Prepare(choice->recipe, choice->read);
+  if (!prepared.ok()) return prepared.status();
+  planned.prepared = *std::move(prepared);
+  return planned;
+}
+
+absl::StatusOr<std::shared_ptr<const TileJob>> TerrainActor::OpenTiles(
+    const v1::StreamTilesRequest& request) {
+  auto planned = Plan(request, "");
+  if (!planned.ok()) return planned.status();
+  return MakeTileJob(std::move(planned->prepared), planned->plan, meter_);
+}
+
+absl::StatusOr<v1::EstimateTilesResponse> TerrainActor::EstimateTiles(
+    const v1::EstimateTilesRequest& request) {
+  const auto planned = Plan(request.request(), "request.");
+  if (!planned.ok()) return planned.status();
+  const TilePlan& plan = planned->plan;
+  v1::EstimateTilesResponse estimate;
+  std::int64_t samples = 0;
+  std::int64_t points = 0;
+  std::int64_t largest = 0;
+  for (const TileKind& kind : RemainingTiles(plan)) {
+    const std::int64_t tile_points =
+        planned->prepared->terrain->GeneratedPoints(
+            {plan.level, plan.sampling, kind.example});
+    samples += kind.count * kind.example.width * kind.example.height;
+    points += kind.count * tile_points;
+    largest = std::max(largest, tile_points);
+  }
+  estimate.set_tiles(plan.total() - plan.first_tile);
+  estimate.set_samples(samples);
+  estimate.set_data_bytes(samples * plan.bytes_per_sample());
+  estimate.set_generated_points(points);
+  estimate.set_cpu_seconds(static_cast<double>(points) *
+                           meter_->ns_per_point() * 1e-9);
+  // Two tiles in hand, and the lattice of the one being generated.
+  estimate.set_memory_bytes(2 * std::int64_t{plan.tile_size} * plan.tile_size *
+                                plan.bytes_per_sample() +
+                            largest * std::int64_t{sizeof(float)});
+  return estimate;
+}
+
+absl::StatusOr<v1::GetProfileResponse> TerrainActor::GetProfile(
+    const v1::GetProfileRequest& request, std::stop_token stop) {
+  core::Violations violations;
+  const auto choice = Read(request.terrain(), "", &violations);
+  if (!choice.ok()) return choice.status();
+  const core::TileRequest plan = PlanProfile(
+      request, ValidSpec(*choice, violations), limits_, "", &violations);
+  if (!violations.empty()) return violations.ToStatus();
+  const auto prepared = terrains_.Prepare(choice->recipe, choice->read);
+  if (!prepared.ok()) return prepared.status();
+  const core::Terrain& terrain = *(*prepared)->terrain;
+
+  v1::GetProfileResponse response;
+  const int count = static_cast<int>(plan.window.width);
+  const std::size_t size = static_cast<std::size_t>(count);
+  response.mutable_heights()->Resize(count, 0);
+  response.mutable_macro_heights()->Resize(count, 0);
+  core::TileScratch scratch;
+  absl::Status status =
+      terrain.Generate(plan, std::move(stop), &scratch,
+                       {response.mutable_heights()->mutable_data(), size});
+  if (status.ok()) {
+    status = terrain.GenerateMacro(
+        plan, &scratch,
+        {response.mutable_macro_heights()->mutable_data(), size});
+  }
+  if (!status.ok()) return status;
+  *response.mutable_recipe() = (*prepared)->recipe;
+  response.set_recipe_hash((*prepared)->recipe_hash);
+  response.set_revision(core::kTerrainRevision);
+  const core::Frame frame = SampleFrame(
+      terrain.spec().frame.value_or(core::Frame{}), plan.level, plan.sampling);
+  response.set_first_x(frame.origin_x +
+                       static_cast<double>(plan.window.x) * frame.spacing_x);
+  response.set_step_x(frame.spacing_x);
+  return response;
+}
+
+absl::StatusOr<v1::GetHeightsResponse> TerrainActor::GetHeights(
+    const v1::GetHeightsRequest& request, std::stop_token stop) {
+  core::Violations violations;
+  const auto choice = Read(request.terrain(), "", &violations);
+  if (!choice.ok()) return choice.status();
+  const std::vector<core::Point2> points = PlanHeights(
+      request, ValidSpec(*choice, violations), limits_, "", &violations);
+  if (!violations.empty()) return violations.ToStatus();
+  const auto prepared = terrains_.Prepare(choice->recipe, choice->read);
+  if (!prepared.ok()) return prepared.status();
+
+  v1::GetHeightsResponse response;
+  response.mutable_heights()->Resize(request.points_size(), 0);
+  core::TileScratch scratch;
+  const absl::Status status = (*prepared)->terrain->GenerateAt(
+      request.level(), points, std::move(stop), &scratch,
+      {response.mutable_heights()->mutable_data(), points.size()});
+  if (!status.ok()) return status;
+  *response.mutable_recipe() = (*prepared)->recipe;
+  response.set_recipe_hash((*prepared)->recipe_hash);
+  response.set_revision(core::kTerrainRevision);
+  return response;
+}
+
+absl::StatusOr<v1::GetPresetResponse> TerrainActor::GetPreset(
+    const v1::GetPresetRequest& request) {
+  const auto preset = FindPreset(request.name());
+  if (!preset.ok()) return preset.status();
+  v1::GetPresetResponse response;
+  *response.mutable_preset() = **preset;
+  return response;
+}
+
+absl::StatusOr<v1::GetRasterResponse> TerrainActor::GetRaster(
+    const v1::GetRasterRequest& request) {
+  auto stored = rasters_.Get(request.raster_id());
+  if (!stored.has_value()) return RasterNotFound(request.raster_id());
+  return std::move(stored->description);
+}
+
+v1::ServerLimits WriteLimits(const Limits& limits) {
+  v1::ServerLimits message;
+  message.set_max_request_bytes(limits.max_request_bytes);
+  message.set_max_level(limits.max_level);
+  message.set_max_tile_size(limits.max_tile_size);
+  message.set_max_stream_samples(limits.max_stream_samples);
+  message.set_max_points(limits.max_points);
+  message.set_max_profile_samples(limits.max_profile_samples);
+  message.set_max_discrete_constraints(limits.recipe.max_discrete_constraints);
+  message.set_max_continuous_constraints(
+      limits.recipe.max_continuous_constraints);
+  message.set_max_vertices(limits.recipe.max_vertices);
+  message.set_max_macro_parts(limits.recipe.max_macro_parts);
+  message.set_max_raster_samples(limits.max_raster_samples);
+  message.set_raster_store_bytes(limits.raster_store_bytes);
+  message.set_max_concurrent_streams(limits.max_concurrent_streams);
+  return message;
+}
+
+v1::GetServerInfoResponse TerrainActor::GetServerInfo() {
+  v1::GetServerInfoResponse info;
+  info.set_version(TERRANE_VERSION);
+  info.set_terrain_revision(core::kTerrainRevision);
+  info.set_simd_target(core::SimdTargetName());
+  info.set_workers(workers_);
+  *info.mutable_limits() = WriteLimits(limits_);
+  for (const auto& [name, preset] : Presets()) {
+    v1::PresetSummary* summary = info.add_presets();
+    summary->set_name(name);
+    summary->set_title(preset.title());
+    summary->set_generator("terrain");
+  }
+  return info;
+}
+
+}  // namespace
+
+std::unique_ptr<Actor> MakeActor(const Limits& limits, int workers) {
+  return std::make_unique<TerrainActor>(limits, workers);
+}
+
+}  // namespace terrane::server

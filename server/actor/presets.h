@@ -1,0 +1,25 @@
+// The presets that ship with the server: protobuf-JSON TerrainPresets of
+// server/presets, embedded when it is built.
+//
+// Threads: immutable; any. Errors: NOT_FOUND with the reason
+// "PRESET_NOT_FOUND". An embedded preset that does not parse is a fault of the
+// build and ends the process at the first use; the tests load them all.
+#ifndef TERRANE_SERVER_ACTOR_PRESETS_H_
+#define TERRANE_SERVER_ACTOR_PRESETS_H_
+
+#include <map>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "terrane/v1/terrain_recipe.pb.h"
+
+namespace terrane::server {
+
+// By name, and so sorted.
+const std::map<std::string, v1::TerrainPreset>& Presets();
+
+absl::StatusOr<const v1::TerrainPreset*> FindPreset(const std::string& name);
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_ACTOR_PRESETS_H_

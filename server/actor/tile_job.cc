@@ -1,0 +1,172 @@
+#include "server/actor/tile_job.h"
+
+#include <xxhash.h>
+
+#include <chrono>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "core/grid/height_codec.h"
+#include "server/convert/enum_table.h"
+#include "server/convert/terrain_convert.h"
+
+namespace terrane::server {
+namespace {
+
+void WriteWindow(const core::Window& window, v1::Window* message) {
+  message->set_x(window.x);
+  message->set_y(window.y);
+  message->set_width(window.width);
+  message->set_height(window.height);
+}
+
+// The range that 16-bit tiles are encoded over; a terrain of one height gets a
+// range around it, since a range has an extent.
+EncodingRange RangeFor(const core::Terrain& terrain, const TilePlan& plan) {
+  if (plan.range.has_value()) return *plan.range;
+  const core::HeightRange likely = terrain.LikelyRange();
+  if (likely.minimum < likely.maximum) return {likely.minimum, likely.maximum};
+  return {likely.minimum - 1.0, likely.minimum + 1.0};
+}
+
+class TileJobImpl : public TileJob {
+ public:
+  TileJobImpl(std::shared_ptr<const PreparedTerrain> prepared,
+              const TilePlan& plan, std::shared_ptr<CostMeter> meter)
+      : prepared_(std::move(prepared)),
+        plan_(plan),
+        range_(RangeFor(*prepared_->terrain, plan)),
+        meter_(std::move(meter)) {
+    WriteHeader();
+  }
+
+  const v1::StreamHeader& header() const override { return header_; }
+  std::int64_t total() const override { return plan_.total(); }
+  std::int64_t first() const override { return plan_.first_tile; }
+
+  absl::Status MakeTile(std::int64_t index, std::stop_token stop,
+                        core::TileScratch* scratch,
+                        v1::HeightTile* tile) const override;
+
+ private:
+  void WriteHeader();
+  absl::Status Generate(const core::TileRequest& request, std::stop_token stop,
+                        core::TileScratch* scratch,
+                        std::span<float> heights) const;
+  void Encode(std::span<const float> heights, v1::HeightTile* tile) const;
+
+  const std::shared_ptr<const PreparedTerrain> prepared_;
+  const TilePlan plan_;
+  const EncodingRange range_;
+  const std::shared_ptr<CostMeter> meter_;
+  v1::StreamHeader header_;
+};
+
+void TileJobImpl::WriteHeader() {
+  const core::Terrain& terrain = *prepared_->terrain;
+  *header_.mutable_recipe() = prepared_->recipe;
+  header_.set_recipe_hash(prepared_->recipe_hash);
+  header_.set_revision(core::kTerrainRevision);
+  header_.set_level(plan_.level);
+  header_.set_sampling(WriteEnum(kSamplings, plan_.sampling));
+  header_.set_encoding(plan_.encoding);
+  if (plan_.encoding == v1::HEIGHT_ENCODING_UINT16_LE) {
+    header_.mutable_range()->set_minimum(range_.minimum);
+    header_.mutable_range()->set_maximum(range_.maximum);
+  }
+  WriteWindow(plan_.whole, header_.mutable_window());
+  WriteFrame(SampleFrame(terrain.spec().frame.value_or(core::Frame{}),
+                         plan_.level, plan_.sampling),
+             prepared_->recipe.frame().crs(), header_.mutable_frame());
+  header_.set_tile_columns(plan_.columns);
+  header_.set_tile_rows(plan_.rows);
+  header_.set_tile_size(plan_.tile_size);
+  if (const auto bound = terrain.DeviationBound()) {
+    header_.set_deviation_bound(*bound);
+  }
+}
+
+absl::Status TileJobImpl::Generate(const core::TileRequest& request,
+                                   std::stop_token stop,
+                                   core::TileScratch* scratch,
+                                   std::span<float> heights) const {
+  const auto start = std::chrono::steady_clock::now();
+  const absl::Status status =
+      prepared_->terrain->Generate(request, std::move(stop), scratch, heights);
+  if (status.ok()) {
+    meter_->Add(std::chrono::steady_clock::now() - start,
+                prepared_->terrain->GeneratedPoints(request));
+  }
+  return status;
+}
+
+void TileJobImpl::Encode(std::span<const float> heights,
+                         v1::HeightTile* tile) const {
+  std::string* data = tile->mutable_data();
+  data->resize(heights.size() * sizeof(std::uint16_t));
+  tile->set_clipped_samples(core::EncodeUint16(
+      heights, range_.minimum, range_.maximum,
+      {reinterpret_cast<std::uint16_t*>(data->data()), heights.size()}));
+}
+
+absl::Status TileJobImpl::MakeTile(std::int64_t index, std::stop_token stop,
+                                   core::TileScratch* scratch,
+                                   v1::HeightTile* tile) const {
+  if (index < first() || index >= total()) {
+    return absl::OutOfRangeError("there is no tile " + std::to_string(index));
+  }
+  const std::int64_t column = index % plan_.columns;
+  const std::int64_t row = index / plan_.columns;
+  const core::TileRequest request{plan_.level, plan_.sampling,
+                                  plan_.TileWindow(column, row)};
+  const std::size_t samples =
+      static_cast<std::size_t>(request.window.width * request.window.height);
+
+  // Floats are generated where they are sent from. A message that had a tile of
+  // this size before keeps its bytes, which spares clearing them.
+  core::HeightStats stats;
+  if (plan_.encoding == v1::HEIGHT_ENCODING_UINT16_LE) {
+    const auto heights = std::make_unique_for_overwrite<float[]>(samples);
+    const std::span<float> span(heights.get(), samples);
+    const absl::Status status =
+        Generate(request, std::move(stop), scratch, span);
+    if (!status.ok()) return status;
+    stats = core::MeasureHeights(span);
+    Encode(span, tile);
+  } else {
+    std::string* data = tile->mutable_data();
+    data->resize(samples * sizeof(float));
+    const std::span<float> span(reinterpret_cast<float*>(data->data()),
+                                samples);
+    const absl::Status status =
+        Generate(request, std::move(stop), scratch, span);
+    if (!status.ok()) return status;
+    stats = core::MeasureHeights(span);
+    tile->set_clipped_samples(0);
+  }
+  tile->set_index(index);
+  tile->set_total(total());
+  tile->set_tile_x(plan_.tile_x + column);
+  tile->set_tile_y(plan_.tile_y + row);
+  WriteWindow(request.window, tile->mutable_window());
+  tile->set_level(plan_.level);
+  tile->set_sampling(header_.sampling());
+  tile->set_encoding(plan_.encoding);
+  tile->set_minimum(stats.minimum);
+  tile->set_maximum(stats.maximum);
+  tile->set_checksum(XXH3_64bits(tile->data().data(), tile->data().size()));
+  tile->set_nodata_samples(stats.nodata_samples);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+std::shared_ptr<const TileJob> MakeTileJob(
+    std::shared_ptr<const PreparedTerrain> prepared, const TilePlan& plan,
+    std::shared_ptr<CostMeter> meter) {
+  return std::make_shared<TileJobImpl>(std::move(prepared), plan,
+                                       std::move(meter));
+}
+
+}  // namespace terrane::server

@@ -1,0 +1,411 @@
+#include "server/convert/request_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "core/terrain/spec_checks.h"
+#include "server/convert/enum_table.h"
+
+namespace terrane::server {
+namespace {
+
+using core::kMaxIndex;
+using core::NumberText;
+using core::Path;
+using core::Violations;
+
+constexpr int kDefaultTileSize = 256;
+
+// Adds a violation when `value` is not in [low, high].
+bool CheckInteger(const Path& path, std::int64_t value, std::int64_t low,
+                  std::int64_t high, Violations* violations) {
+  if (value >= low && value <= high) return true;
+  violations->Add(path.Text(), "must be in [" + std::to_string(low) + ", " +
+                                   std::to_string(high) + "], got " +
+                                   std::to_string(value));
+  return false;
+}
+
+// The domain that requests are checked against; a refinement's is its model's
+// posts even before Terrain::Create says so.
+std::optional<core::Domain> DomainOf(const core::TerrainSpec& spec) {
+  if (spec.domain.has_value() || !spec.refinement.has_value()) {
+    return spec.domain;
+  }
+  const auto& raster =
+      *std::get<core::RasterShape>(spec.macro.parts.front().shape).raster;
+  return core::Domain{raster.width - 1, raster.height - 1};
+}
+
+// Samples along an axis of `cells` level-0 cells: at most 2^60 + 1.
+std::int64_t AxisSamples(std::int64_t cells, int level,
+                         core::Sampling sampling) {
+  return (cells << level) + (sampling == core::Sampling::kPoint ? 1 : 0);
+}
+
+// Samples of a domain at a level and sampling.
+struct Extent {
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+};
+
+std::optional<Extent> ExtentOf(const core::TerrainSpec* spec, int level,
+                               core::Sampling sampling) {
+  if (spec == nullptr) return std::nullopt;
+  const std::optional<core::Domain> domain = DomainOf(*spec);
+  if (!domain.has_value()) return std::nullopt;
+  const bool line = spec->dimensions == 1;
+  return Extent{AxisSamples(domain->cells_x, level, sampling),
+                line ? 1 : AxisSamples(domain->cells_y, level, sampling)};
+}
+
+// Checks the samples [first, first + count) of one axis; `extent` is that of a
+// bounded domain.
+bool CheckSamples(const Path& first_path, std::int64_t first,
+                  const Path& count_path, std::int64_t count,
+                  std::optional<std::int64_t> extent, Violations* violations) {
+  if (!CheckInteger(first_path, first, extent ? 0 : -kMaxIndex, kMaxIndex,
+                    violations)) {
+    return false;
+  }
+  const std::int64_t end = extent ? std::min(*extent, kMaxIndex) : kMaxIndex;
+  if (first >= end) {
+    return CheckInteger(first_path, first, extent ? 0 : -kMaxIndex, end - 1,
+                        violations);
+  }
+  return CheckInteger(count_path, count, 1, end - first, violations);
+}
+
+// One StreamTiles request being checked.
+class TilePlanner {
+ public:
+  TilePlanner(const v1::StreamTilesRequest& request,
+              const core::TerrainSpec* spec, const Limits& limits,
+              const Path& root, Violations* violations)
+      : request_(request),
+        spec_(spec),
+        limits_(limits),
+        root_(root),
+        violations_(violations) {}
+
+  TilePlan Plan();
+
+ private:
+  void PlanSamples();
+  void PlanRange();
+  void PlanExtent();
+  void PlanWindow(const v1::Window& window);
+  void PlanTileRange(const v1::TileRange& tiles);
+  void PlanWholeDomain();
+  // Stride and window of one axis of a tile range.
+  bool PlanTileAxis(const Path& first_path, std::int64_t first,
+                    const Path& count_path, std::int64_t count,
+                    std::optional<std::int64_t> extent,
+                    std::int64_t* sample_first, std::int64_t* sample_count);
+  void CutWindow();
+  void CheckTotals(const Path& path);
+
+  const v1::StreamTilesRequest& request_;
+  const core::TerrainSpec* const spec_;
+  const Limits& limits_;
+  const Path& root_;
+  Violations* const violations_;
+  bool size_good_ = false;
+  std::optional<Extent> extent_;
+  TilePlan plan_;
+};
+
+void TilePlanner::PlanSamples() {
+  plan_.level = request_.level();
+  const bool level_good = CheckInteger(root_.Field("level"), plan_.level, 0,
+                                       limits_.max_level, violations_);
+  plan_.sampling = ReadEnum(kSamplings, request_.sampling(),
+                            root_.Field("sampling"), violations_);
+  plan_.tile_size =
+      request_.tile_size() == 0 ? kDefaultTileSize : request_.tile_size();
+  const bool shares_edges =
+      request_.has_tiles() && plan_.sampling == core::Sampling::kPoint;
+  size_good_ =
+      CheckInteger(root_.Field("tile_size"), plan_.tile_size,
+                   shares_edges ? 2 : 1, limits_.max_tile_size, violations_);
+  plan_.stride = plan_.tile_size - (shares_edges ? 1 : 0);
+  if (level_good) extent_ = ExtentOf(spec_, plan_.level, plan_.sampling);
+}
+
+void TilePlanner::PlanRange() {
+  switch (request_.encoding()) {
+    case v1::HEIGHT_ENCODING_UNSPECIFIED:
+    case v1::HEIGHT_ENCODING_FLOAT32_LE:
+      return;
+    case v1::HEIGHT_ENCODING_UINT16_LE:
+      plan_.encoding = request_.encoding();
+      break;
+    default:
+      violations_->Add(root_.Field("encoding").Text(),
+                       "must be a value that the API knows, got " +
+                           std::to_string(request_.encoding()));
+      return;
+  }
+  if (!request_.has_range()) return;
+  const Path range = root_.Field("range");
+  const EncodingRange asked{request_.range().minimum(),
+                            request_.range().maximum()};
+  core::SpecChecks checks(limits_.recipe, 2, violations_);
+  constexpr core::Range kRangeEnds{-1e12, 1e12};
+  if (checks.Number(range.Field("minimum"), asked.minimum, kRangeEnds) &&
+      checks.Number(range.Field("maximum"), asked.maximum, kRangeEnds) &&
+      !(asked.minimum < asked.maximum)) {
+    violations_->Add(range.Field("maximum").Text(),
+                     "must be above minimum " + NumberText(asked.minimum) +
+                         ", got " + NumberText(asked.maximum));
+  }
+  plan_.range = asked;
+}
+
+void TilePlanner::CutWindow() {
+  plan_.columns = (plan_.whole.width + plan_.tile_size - 1) / plan_.tile_size;
+  plan_.rows = (plan_.whole.height + plan_.tile_size - 1) / plan_.tile_size;
+}
+
+void TilePlanner::PlanWindow(const v1::Window& window) {
+  const Path path = root_.Field("window");
+  plan_.whole = {window.x(), window.y(), window.width(), window.height()};
+  const auto width = extent_ ? std::optional(extent_->width) : std::nullopt;
+  const auto height = extent_ ? std::optional(extent_->height) : std::nullopt;
+  const bool columns_good =
+      CheckSamples(path.Field("x"), window.x(), path.Field("width"),
+                   window.width(), width, violations_);
+  const bool rows_good =
+      CheckSamples(path.Field("y"), window.y(), path.Field("height"),
+                   window.height(), height, violations_);
+  if (!columns_good || !rows_good || !size_good_) return;
+  CutWindow();
+  CheckTotals(path);
+}
+
+bool TilePlanner::PlanTileAxis(const Path& first_path, std::int64_t first,
+                               const Path& count_path, std::int64_t count,
+                               std::optional<std::int64_t> extent,
+                               std::int64_t* sample_first,
+                               std::int64_t* sample_count) {
+  // Whole tiles that fit from sample 0 on, and before it in an endless world.
+  const std::int64_t end = extent ? std::min(*extent, kMaxIndex) : kMaxIndex;
+  const std::int64_t shared = plan_.tile_size - plan_.stride;
+  const std::int64_t fit = (end - shared) / plan_.stride;
+  if (!CheckInteger(first_path, first, extent ? 0 : -(kMaxIndex / plan_.stride),
+                    std::max<std::int64_t>(fit - 1, 0), violations_) ||
+      !CheckInteger(count_path, count, 1, fit - first, violations_)) {
+    return false;
+  }
+  *sample_first = first * plan_.stride;
+  *sample_count = count * plan_.stride + shared;
+  return true;
+}
+
+void TilePlanner::PlanTileRange(const v1::TileRange& tiles) {
+  if (!size_good_) return;
+  const Path path = root_.Field("tiles");
+  const auto width = extent_ ? std::optional(extent_->width) : std::nullopt;
+  const auto height = extent_ ? std::optional(extent_->height) : std::nullopt;
+  plan_.tile_x = tiles.x();
+  plan_.tile_y = tiles.y();
+  plan_.columns = tiles.columns();
+  plan_.rows = tiles.rows();
+  const bool columns_good =
+      PlanTileAxis(path.Field("x"), tiles.x(), path.Field("columns"),
+                   tiles.columns(), width, &plan_.whole.x, &plan_.whole.width);
+  const bool rows_good =
+      PlanTileAxis(path.Field("y"), tiles.y(), path.Field("rows"), tiles.rows(),
+                   height, &plan_.whole.y, &plan_.whole.height);
+  if (columns_good && rows_good) CheckTotals(path);
+}
+
+void TilePlanner::PlanWholeDomain() {
+  if (spec_ == nullptr) return;  // nothing is known of a bad recipe's domain
+  if (!extent_.has_value()) {
+    if (!DomainOf(*spec_).has_value()) {
+      violations_->Add(root_.Field("window").Text(),
+                       "must be set, or tiles, when the terrain is endless");
+    }
+    return;
+  }
+  if (std::max(extent_->width, extent_->height) > kMaxIndex) {
+    violations_->Add(root_.Field("level").Text(),
+                     "must leave at most 2^52 samples a side of the domain, "
+                     "got " +
+                         std::to_string(plan_.level));
+    return;
+  }
+  plan_.whole = {0, 0, extent_->width, extent_->height};
+  if (!size_good_) return;
+  CutWindow();
+  CheckTotals(root_.Field("window"));
+}
+
+void TilePlanner::PlanExtent() {
+  switch (request_.extent_case()) {
+    case v1::StreamTilesRequest::kWindow:
+      return PlanWindow(request_.window());
+    case v1::StreamTilesRequest::kTiles:
+      return PlanTileRange(request_.tiles());
+    case v1::StreamTilesRequest::EXTENT_NOT_SET:
+      return PlanWholeDomain();
+  }
+}
+
+void TilePlanner::CheckTotals(const Path& path) {
+  // Samples sent: those of shared edges count in every tile that has them.
+  const bool ranges = request_.has_tiles();
+  std::int64_t columns = ranges ? 0 : plan_.whole.width;
+  std::int64_t rows = ranges ? 0 : plan_.whole.height;
+  std::int64_t samples = 0;
+  const bool overflow =
+      (ranges &&
+       (__builtin_mul_overflow(plan_.columns, plan_.tile_size, &columns) ||
+        __builtin_mul_overflow(plan_.rows, plan_.tile_size, &rows))) ||
+      __builtin_mul_overflow(columns, rows, &samples);
+  if (overflow || samples > limits_.max_stream_samples) {
+    violations_->Add(
+        path.Text(),
+        "must have at most " + std::to_string(limits_.max_stream_samples) +
+            " samples, got " +
+            (overflow ? "more than 2^63" : std::to_string(samples)));
+    return;
+  }
+  CheckInteger(root_.Field("first_tile"), plan_.first_tile, 0, plan_.total(),
+               violations_);
+}
+
+TilePlan TilePlanner::Plan() {
+  if (spec_ != nullptr && spec_->dimensions != 2) {
+    violations_->Add(root_.Field("terrain").Text(),
+                     "must have 2 dimensions, got 1");
+  }
+  plan_.first_tile = request_.first_tile();
+  PlanSamples();
+  PlanExtent();
+  PlanRange();
+  return plan_;
+}
+
+}  // namespace
+
+core::Window TilePlan::TileWindow(std::int64_t column, std::int64_t row) const {
+  const std::int64_t x = column * stride;
+  const std::int64_t y = row * stride;
+  return {whole.x + x, whole.y + y,
+          std::min<std::int64_t>(tile_size, whole.width - x),
+          std::min<std::int64_t>(tile_size, whole.height - y)};
+}
+
+TilePlan PlanTiles(const v1::StreamTilesRequest& request,
+                   const core::TerrainSpec* spec, const Limits& limits,
+                   const std::string& prefix, core::Violations* violations) {
+  const Path root(&prefix);
+  return TilePlanner(request, spec, limits, root, violations).Plan();
+}
+
+std::vector<TileKind> RemainingTiles(const TilePlan& plan) {
+  std::vector<TileKind> kinds;
+  // Tiles of `rows` rows from `row` on, from `column` on: all but the last
+  // column have one size, and so have all but the last row.
+  const auto add = [&](std::int64_t column, std::int64_t row,
+                       std::int64_t rows) {
+    if (rows <= 0) return;
+    const std::int64_t inner = plan.columns - 1 - column;
+    if (inner > 0) {
+      kinds.push_back({plan.TileWindow(column, row), inner * rows});
+    }
+    kinds.push_back({plan.TileWindow(plan.columns - 1, row), rows});
+  };
+  std::int64_t row = plan.first_tile / plan.columns;
+  const std::int64_t column = plan.first_tile % plan.columns;
+  if (column > 0) add(column, row++, 1);
+  add(0, row, plan.rows - 1 - row);
+  if (row < plan.rows) add(0, plan.rows - 1, 1);
+  return kinds;
+}
+
+core::TileRequest PlanProfile(const v1::GetProfileRequest& request,
+                              const core::TerrainSpec* spec,
+                              const Limits& limits, const std::string& prefix,
+                              core::Violations* violations) {
+  const Path root(&prefix);
+  core::TileRequest plan;
+  if (spec != nullptr && spec->dimensions != 1) {
+    violations->Add(root.Field("terrain").Text(),
+                    "must have 1 dimension, got 2");
+  }
+  plan.level = request.level();
+  const bool level_good = CheckInteger(root.Field("level"), plan.level, 0,
+                                       limits.max_level, violations);
+  plan.sampling = ReadEnum(kSamplings, request.sampling(),
+                           root.Field("sampling"), violations);
+  plan.window = {request.first(), 0, request.count(), 1};
+  const Path count = root.Field("count");
+  if (!level_good) return plan;
+  const std::optional<Extent> extent =
+      ExtentOf(spec, plan.level, plan.sampling);
+  if (request.count() == 0) {
+    if (extent.has_value()) {
+      plan.window = {0, 0, extent->width, 1};
+    } else if (spec != nullptr) {
+      violations->Add(count.Text(), "must be set when the terrain is endless");
+      return plan;
+    }
+  }
+  if (spec == nullptr && request.count() == 0) return plan;
+  if (!CheckInteger(count, plan.window.width, 1, limits.max_profile_samples,
+                    violations)) {
+    return plan;
+  }
+  CheckSamples(root.Field("first"), plan.window.x, count, plan.window.width,
+               extent ? std::optional(extent->width) : std::nullopt,
+               violations);
+  return plan;
+}
+
+std::vector<core::Point2> PlanHeights(const v1::GetHeightsRequest& request,
+                                      const core::TerrainSpec* spec,
+                                      const Limits& limits,
+                                      const std::string& prefix,
+                                      core::Violations* violations) {
+  const Path root(&prefix);
+  if (spec != nullptr && spec->dimensions != 2) {
+    violations->Add(root.Field("terrain").Text(),
+                    "must have 2 dimensions, got 1");
+  }
+  CheckInteger(root.Field("level"), request.level(), 0, limits.max_level,
+               violations);
+  std::vector<core::Point2> points;
+  if (request.points_size() > limits.max_points) {
+    violations->Add(root.Field("points").Text(),
+                    "must have at most " + std::to_string(limits.max_points) +
+                        " elements, got " +
+                        std::to_string(request.points_size()));
+    return points;
+  }
+  core::SpecChecks checks(limits.recipe, 2, violations);
+  points.reserve(static_cast<std::size_t>(request.points_size()));
+  for (const v1::Point& point : request.points()) {
+    const core::Point2 place{point.x(), point.y()};
+    checks.Coordinates(root.Element("points", points.size()), place);
+    points.push_back(place);
+  }
+  return points;
+}
+
+core::Frame SampleFrame(const core::Frame& frame, int level,
+                        core::Sampling sampling) {
+  const double step_x = std::ldexp(frame.spacing_x, -level);
+  const double step_y = std::ldexp(frame.spacing_y, -level);
+  if (sampling == core::Sampling::kPoint) {
+    return {frame.origin_x, frame.origin_y, step_x, step_y};
+  }
+  return {frame.origin_x + step_x / 2, frame.origin_y + step_y / 2, step_x,
+          step_y};
+}
+
+}  // namespace terrane::server
