@@ -81,10 +81,11 @@ absl::Status RasterUploadImpl::Begin(const v1::UploadRasterRequest& first) {
   const core::Path root(&prefix);
   core::SpecChecks checks(limits_.recipe, 2, &violations);
   constexpr std::int64_t kMaxSide = std::int64_t{1} << 20;
-  const bool sides_good =
-      checks.Integer(root.Field("width"), header_.width(), 2, kMaxSide) &&
+  const bool width_good =
+      checks.Integer(root.Field("width"), header_.width(), 2, kMaxSide);
+  const bool height_good =
       checks.Integer(root.Field("height"), header_.height(), 2, kMaxSide);
-  if (sides_good &&
+  if (width_good && height_good &&
       header_.width() * header_.height() > limits_.max_raster_samples) {
     violations.Add("header",
                    "must have at most " +

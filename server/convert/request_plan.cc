@@ -154,9 +154,11 @@ void TilePlanner::PlanRange() {
                             request_.range().maximum()};
   core::SpecChecks checks(limits_.recipe, 2, violations_);
   constexpr core::Range kRangeEnds{-1e12, 1e12};
-  if (checks.Number(range.Field("minimum"), asked.minimum, kRangeEnds) &&
-      checks.Number(range.Field("maximum"), asked.maximum, kRangeEnds) &&
-      !(asked.minimum < asked.maximum)) {
+  const bool minimum_good =
+      checks.Number(range.Field("minimum"), asked.minimum, kRangeEnds);
+  const bool maximum_good =
+      checks.Number(range.Field("maximum"), asked.maximum, kRangeEnds);
+  if (minimum_good && maximum_good && asked.minimum >= asked.maximum) {
     violations_->Add(range.Field("maximum").Text(),
                      "must be above minimum " + NumberText(asked.minimum) +
                          ", got " + NumberText(asked.maximum));
