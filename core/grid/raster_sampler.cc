@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/grid/cubic_weights.h"
 #include "core/grid/raster_prepare.h"
 
 namespace terrane::core {
@@ -16,28 +17,6 @@ constexpr std::int64_t kBlock = 32;
 // fades by 0.27 per post, to nothing in float over this many.
 constexpr int kLocalRings = 3;
 constexpr int kPrefilterRings = 16;
-
-// The sum of a Catmull-Rom kernel's absolute weights is at most 5/4 along each
-// axis: how far values may overshoot their posts.
-constexpr double kCatmullRomGain = 1.25 * 1.25;
-
-struct CubicWeights {
-  double at[4];
-};
-
-// Exactly (0, 1, 0, 0) at 0 and (0, 0, 1, 0) at 1.
-CubicWeights CatmullRomWeights(double t) {
-  return {{t * (t * (1.0 - 0.5 * t) - 0.5), t * t * (1.5 * t - 2.5) + 1.0,
-           t * (t * (2.0 - 1.5 * t) + 0.5), t * t * (0.5 * t - 0.5)}};
-}
-
-CubicWeights BSplineWeights(double t) {
-  const double s = 1.0 - t;
-  const double first = s * s * s / 6.0;
-  const double last = t * t * t / 6.0;
-  const double second = 2.0 / 3.0 - t * t * (1.0 - 0.5 * t);
-  return {{first, second, 1.0 - first - second - last, last}};
-}
 
 template <int kTaps, typename Taps>
 void InterpolateRow(const float* posts, std::span<const Taps> columns,
@@ -216,8 +195,9 @@ RasterSampler::Bounds RasterSampler::BoundsIn(double min_u, double min_v,
       maximum = std::max(maximum, static_cast<double>(block_maximum_[block]));
     }
   }
-  const double gain =
-      kernel_ == SampleKernel::kCatmullRom ? kCatmullRomGain : 1.0;
+  const double gain = kernel_ == SampleKernel::kCatmullRom
+                          ? kCatmullRomGain * kCatmullRomGain
+                          : 1.0;
   // Room for the rounding of weights, sums and the result.
   const double slack = 1e-6 * std::max(std::fabs(minimum), std::fabs(maximum));
   const double centre = 0.5 * (minimum + maximum);
