@@ -2,9 +2,9 @@
 // between its posts, judged from its own posts.
 //
 // The model's odd-odd posts are predicted from its even posts with the 4 x 4
-// Deslauriers-Dubuc weights that SUBDIVISION uses. The local root mean square of
-// that residual (7 x 7 box, then smoothed) is the amplitude map; how the residual
-// scales between two levels of the model gives H. See docs/terrain.md,
+// Deslauriers-Dubuc weights that SUBDIVISION uses. The local root mean square
+// of that residual (7 x 7 box, then smoothed) is the amplitude map; how the
+// residual scales between two levels of the model gives H. See docs/terrain.md,
 // "Refining a real elevation model".
 #ifndef TERRANE_CORE_TERRAIN_CALIBRATION_H_
 #define TERRANE_CORE_TERRAIN_CALIBRATION_H_
@@ -33,8 +33,8 @@ struct Calibration {
 };
 
 // `roughness`: H to use instead of the measured one. Errors: INVALID_ARGUMENT
-// (field "macro.parts[0].raster") when the model has fewer than 8 x 8 posts or no
-// data to judge from.
+// (field "macro.parts[0].raster") when the model has fewer than 8 x 8 posts or
+// no data to judge from.
 absl::StatusOr<Calibration> CalibrateRefinement(
     const Raster& model, std::optional<double> roughness);
 

@@ -40,9 +40,10 @@ class ConstraintField {
   float maximum() const;
 
   // Writes F at every sample, out[j * stride + i], and returns true; or returns
-  // false and writes nothing when no source reaches any of the samples (F is the
-  // background everywhere).
-  bool Evaluate(const SampleGrid& grid, float* out, std::ptrdiff_t stride) const;
+  // false and writes nothing when no source reaches any of the samples (F is
+  // the background everywhere).
+  bool Evaluate(const SampleGrid& grid, float* out,
+                std::ptrdiff_t stride) const;
 
  private:
   class Impl;

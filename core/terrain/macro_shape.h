@@ -1,7 +1,7 @@
 // The macro shape d(p), ready to evaluate.
 //
-// Immutable and thread-safe. Determinism: the value at a sample is a function of
-// the sample's own (u, v, x, y) alone; no libm in the result.
+// Immutable and thread-safe. Determinism: the value at a sample is a function
+// of the sample's own (u, v, x, y) alone; no libm in the result.
 #ifndef TERRANE_CORE_TERRAIN_MACRO_SHAPE_H_
 #define TERRANE_CORE_TERRAIN_MACRO_SHAPE_H_
 
@@ -27,9 +27,10 @@ class MacroShape {
   // The height everywhere, when there are no parts.
   std::optional<float> constant() const;
 
-  // Writes d at every sample: out[j * stride + i] for column i, row j; NaN where
-  // there is no data.
-  void Evaluate(const SampleGrid& grid, float* out, std::ptrdiff_t stride) const;
+  // Writes d at every sample: out[j * stride + i] for column i, row j; NaN
+  // where there is no data.
+  void Evaluate(const SampleGrid& grid, float* out,
+                std::ptrdiff_t stride) const;
 
   // Bounds that no value of d exceeds inside the box
   // [min_x, max_x] x [min_y, max_y] (world); conservative.

@@ -1,8 +1,8 @@
 // Terrain: a spec made ready to generate from, and the generation itself.
 //
-// A Terrain is immutable and thread-safe; share it by shared_ptr<const Terrain>.
-// Generating needs a TileScratch, working memory that one thread at a time uses
-// and that may be reused for any number of tiles of any terrain.
+// A Terrain is immutable and thread-safe; share it by shared_ptr<const
+// Terrain>. Generating needs a TileScratch, working memory that one thread at a
+// time uses and that may be reused for any number of tiles of any terrain.
 //
 // Determinism: a height is a pure function of (resolved spec, level, sampling,
 // sample index). It does not depend on the window it was asked in, the thread,
@@ -59,8 +59,8 @@ class Terrain {
  public:
   // Validates the spec, fills in what is not set and prepares: calibrates a
   // refinement, snaps and indexes constraints, prefilters rasters. Errors:
-  // INVALID_ARGUMENT with violations (field paths relative to the recipe, such as
-  // "roughness").
+  // INVALID_ARGUMENT with violations (field paths relative to the recipe, such
+  // as "roughness").
   static absl::StatusOr<std::shared_ptr<const Terrain>> Create(
       TerrainSpec spec);
 
@@ -80,10 +80,11 @@ class Terrain {
   // "window.height".
   absl::Status CheckRequest(const TileRequest& request) const;
 
-  // Writes window.width * window.height heights, row-major; NaN where there is no
-  // data. `out` must have that size. Memory and errors: the scratch grows to
+  // Writes window.width * window.height heights, row-major; NaN where there is
+  // no data. `out` must have that size. Memory and errors: the scratch grows to
   // what a block needs, whatever the window. CANCELLED when `stop` was asked to
-  // (polled at least every millisecond of work), INVALID_ARGUMENT as CheckRequest.
+  // (polled at least every millisecond of work), INVALID_ARGUMENT as
+  // CheckRequest.
   absl::Status Generate(const TileRequest& request, std::stop_token stop,
                         TileScratch* scratch, std::span<float> out) const;
 
@@ -91,7 +92,8 @@ class Terrain {
   absl::Status GenerateMacro(const TileRequest& request, TileScratch* scratch,
                              std::span<float> out) const;
 
-  // P_fbm alone, before any mapping: what the statistics of the method speak of.
+  // P_fbm alone, before any mapping: what the statistics of the method speak
+  // of.
   absl::Status GenerateFractal(const TileRequest& request, std::stop_token stop,
                                TileScratch* scratch,
                                std::span<float> out) const;
@@ -109,8 +111,8 @@ class Terrain {
   // Largest possible |D - d|; nothing when unbounded.
   std::optional<double> DeviationBound() const;
 
-  // A range that holds every height (BOLTZMANN, soft limit), or all but about one
-  // in 10^8 (LINEAR): the default range of 16-bit encodings.
+  // A range that holds every height (BOLTZMANN, soft limit), or all but about
+  // one in 10^8 (LINEAR): the default range of 16-bit encodings.
   HeightRange LikelyRange() const;
 
  private:
@@ -118,9 +120,6 @@ class Terrain {
   explicit Terrain(std::unique_ptr<const Impl> impl);
   std::unique_ptr<const Impl> impl_;
 };
-
-// Name of the SIMD target that generation uses on this CPU, such as "AVX3".
-const char* SimdTargetName();
 
 }  // namespace terrane::core
 

@@ -1,10 +1,10 @@
 // TerrainSpec: everything that determines a terrain, as plain data.
 //
-// The C++ side of proto/terrane/v1/terrain_recipe.proto: same names, same units,
-// same defaults; the proto's comments hold the ranges. Optional fields that are
-// not set are filled in by Terrain::Create. A spec is only data: ValidateSpec
-// (core/terrain/validate.h) says what is wrong with it, Terrain::Create refuses
-// one that is not valid.
+// The C++ side of proto/terrane/v1/terrain_recipe.proto: same names, same
+// units, same defaults; the proto's comments hold the ranges. Optional fields
+// that are not set are filled in by Terrain::Create. A spec is only data:
+// ValidateSpec (core/terrain/validate.h) says what is wrong with it,
+// Terrain::Create refuses one that is not valid.
 //
 // Source: Tan & Chen, "A controllable fractal generation method based on FBM
 // constraint model", Journal of Software 14(3), 2003.
@@ -111,7 +111,8 @@ struct MacroSpec {
   std::vector<MacroPart> parts;
 };
 
-// --- Constraints ---------------------------------------------------------------
+// --- Constraints
+// ---------------------------------------------------------------
 
 struct DiscreteConstraint {
   Point2 point;
@@ -135,7 +136,8 @@ struct ContinuousConstraint {
   std::vector<Point2> vertices;
 };
 
-// --- The whole -----------------------------------------------------------------
+// --- The whole
+// -----------------------------------------------------------------
 
 struct Domain {
   std::int64_t cells_x = 0;

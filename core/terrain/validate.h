@@ -1,5 +1,6 @@
-// What is wrong with a TerrainSpec: every violation in one pass, before anything
-// is allocated. Named free functions without state; safe from any thread.
+// What is wrong with a TerrainSpec: every violation in one pass, before
+// anything is allocated. Named free functions without state; safe from any
+// thread.
 #ifndef TERRANE_CORE_TERRAIN_VALIDATE_H_
 #define TERRANE_CORE_TERRAIN_VALIDATE_H_
 

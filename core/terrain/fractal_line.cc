@@ -1,0 +1,152 @@
+#include "core/terrain/fractal_line.h"
+
+#include <utility>
+
+#include "core/noise/counter_hash.h"
+#include "core/noise/normal.h"
+
+namespace terrane::core {
+namespace {
+
+// Corners on each side that four-point subdivision takes beyond a cell.
+constexpr std::int64_t kMargin = 1;
+
+// Streams of the line, apart from those of the plane.
+constexpr std::uint32_t kFirstStream = 1u << 16;
+
+float FourPoint(float a, float b, float c, float d) {
+  return (b + c) * (9.0f / 16) - (a + d) * (1.0f / 16);
+}
+
+}  // namespace
+
+FractalLine::FractalLine(Config config, DeviationModel model,
+                         std::shared_ptr<const DiscreteConstraints> constraints)
+    : config_(std::move(config)),
+      model_(std::move(model)),
+      constraints_(std::move(constraints)) {}
+
+FractalLine::Line FractalLine::ParentOf(const Line& child) const {
+  const std::int64_t first = child.first >> 1;
+  const std::int64_t cells = ((child.first + child.count + 1) >> 1) - first;
+  return {first - kMargin, cells + 1 + 2 * kMargin};
+}
+
+std::vector<FractalLine::Line> FractalLine::Ancestors(int level,
+                                                      const Line& line) const {
+  std::vector<Line> lines = {line};
+  for (int n = level; n > 0; --n) lines.push_back(ParentOf(lines.back()));
+  return lines;
+}
+
+std::int64_t FractalLine::PointsComputed(int level, std::int64_t count) const {
+  std::int64_t points = 0;
+  for (const Line& line : Ancestors(level, {0, count})) points += line.count;
+  return points;
+}
+
+float FractalLine::Normal(int level, std::int64_t index) const {
+  const RowKey key = MakeRowKey(
+      StreamKey(config_.seed, kFirstStream + static_cast<std::uint32_t>(level)),
+      0);
+  return NormalFromBits(
+      HashLane(ColumnWord(config_.mirror.X(index, level)), key));
+}
+
+std::span<const float> FractalLine::Points(int level, std::int64_t first,
+                                           std::int64_t count,
+                                           const std::stop_token& stop,
+                                           Scratch* scratch) const {
+  const std::vector<Line> lines = Ancestors(level, {first, count});
+  scratch->buffered.clear();
+  Line line = lines.back();
+  FillLevel0(line, &scratch->lines[0]);
+  MeetConstraints(0, line, &scratch->lines[0], scratch);
+  for (int n = 1; n <= level; ++n) {
+    if (stop.stop_requested()) return {};
+    std::vector<float>& values = scratch->lines[n % 2];
+    Refine(n, line, scratch->lines[(n - 1) % 2], &values, scratch);
+    line = {2 * (line.first + kMargin), 2 * (line.count - 1 - 2 * kMargin)};
+    AddBuffers(line, &values, scratch);
+    MeetConstraints(n, line, &values, scratch);
+  }
+  return std::span(scratch->lines[level % 2])
+      .subspan(static_cast<std::size_t>(first - line.first),
+               static_cast<std::size_t>(count));
+}
+
+void FractalLine::FillLevel0(const Line& line,
+                             std::vector<float>* values) const {
+  values->clear();
+  for (std::int64_t i = 0; i < line.count; ++i) {
+    values->push_back(Normal(0, line.first + i) * model_.level0());
+  }
+}
+
+void FractalLine::Refine(int level, const Line& parent,
+                         const std::vector<float>& from, std::vector<float>* to,
+                         Scratch* scratch) const {
+  const bool wide = config_.source == FractalSource::kSubdivision;
+  const bool displace_all = config_.source == FractalSource::kSuccessive;
+  const auto count = static_cast<int>(parent.count);
+  const auto deviation = [&](int parity) {
+    return model_.At(level, HalfStep::kEdge, {2 * parent.first + parity, count},
+                     {0, 1}, &scratch->deviation, &scratch->model);
+  };
+  const auto at = [](const Deviation& d, std::size_t i) {
+    return d.varies() ? d.per_point.data[i] : d.uniform;
+  };
+  const auto cells = static_cast<std::size_t>(parent.count - 1 - 2 * kMargin);
+  to->resize(2 * cells);
+  const Deviation odd = deviation(1);
+  for (std::size_t k = 0; k < cells; ++k) {
+    const std::size_t i = k + kMargin;
+    const float mean =
+        wide ? FourPoint(from[i - 1], from[i], from[i + 1], from[i + 2])
+             : (from[i] + from[i + 1]) * 0.5f;
+    const std::int64_t index =
+        2 * (parent.first + static_cast<std::int64_t>(i)) + 1;
+    (*to)[2 * k] = from[i];
+    (*to)[2 * k + 1] = mean + Normal(level, index) * at(odd, i);
+  }
+  if (!displace_all) return;
+  const Deviation even = deviation(0);
+  for (std::size_t k = 0; k < cells; ++k) {
+    const std::size_t i = k + kMargin;
+    const std::int64_t index =
+        2 * (parent.first + static_cast<std::int64_t>(i));
+    (*to)[2 * k] += Normal(level, index) * at(even, i);
+  }
+}
+
+// Eq. 11 with M = 2: the points half way to both parents get -P(p*) / 2.
+void FractalLine::AddBuffers(const Line& line, std::vector<float>* values,
+                             Scratch* scratch) const {
+  for (std::size_t k = 0; k < scratch->buffered.size(); ++k) {
+    for (const std::int64_t side : {-1, 1}) {
+      const std::int64_t i = 2 * scratch->buffered[k].x + side - line.first;
+      if (i < 0 || i >= line.count) continue;
+      (*values)[static_cast<std::size_t>(i)] +=
+          scratch->buffered_values[k] * -0.5f;
+    }
+  }
+}
+
+void FractalLine::MeetConstraints(int level, const Line& line,
+                                  std::vector<float>* values,
+                                  Scratch* scratch) const {
+  scratch->buffered.clear();
+  scratch->buffered_values.clear();
+  scratch->found.clear();
+  constraints_->Find(level, {line.first, 0, line.count, 1}, &scratch->found);
+  for (const LatticePoint& point : scratch->found) {
+    float& value = (*values)[static_cast<std::size_t>(point.x - line.first)];
+    if (level > 0) {
+      scratch->buffered.push_back(point);
+      scratch->buffered_values.push_back(value);
+    }
+    value = 0;
+  }
+}
+
+}  // namespace terrane::core
