@@ -146,7 +146,7 @@ class SpoolSink : public HeightSink {
     HeightSidecar sidecar = SidecarOf(
         path_, layout_,
         format_ == HeightFormat::kPng ? "uint16-png" : "uint16-le", range);
-    sidecar.set_nodata_samples(static_cast<double>(totals.nodata_samples()));
+    sidecar.set_nodata_samples(static_cast<double>(nodata_));
     sidecar.set_clipped_samples(static_cast<double>(clipped_));
     return WriteSidecar(path_, sidecar);
   }
@@ -160,6 +160,7 @@ class SpoolSink : public HeightSink {
       const double height = heights[i];
       const double inside = std::clamp(height, range.minimum, range.maximum);
       clipped_ += inside < height || inside > height ? 1 : 0;
+      nodata_ += std::isnan(height) ? 1 : 0;
       steps[i] = std::isnan(height)
                      ? std::uint16_t{0}
                      : static_cast<std::uint16_t>(
@@ -218,6 +219,7 @@ class SpoolSink : public HeightSink {
   HeightLayout layout_;
   std::optional<HeightRange> range_;
   std::int64_t clipped_ = 0;
+  std::int64_t nodata_ = 0;
 };
 
 absl::Status CheckImageSize(const std::string& path,

@@ -127,6 +127,7 @@ struct Block {
   std::vector<bool> water;
   double minimum = 0;
   double maximum = 0;
+  double exaggeration = 1;
 
   std::size_t At(std::int64_t i, std::int64_t j) const {
     return static_cast<std::size_t>(j * columns + i);
@@ -171,13 +172,13 @@ Block MakeBlock(const core::HeightView& heights, const core::GroundScale& scale,
   block.maximum = std::max(whole.maximum, block.minimum);
 
   std::vector<float> shade(values.size());
-  // The light must see the relief that the viewer sees.
-  const double exaggeration = options.exaggeration.value_or(
+  block.exaggeration = options.exaggeration.value_or(
       block.relief() > 0 ? kReliefShare * block.longer_side() / block.relief()
                          : 1);
+  // The light sees the same relief as the viewer.
   core::Hillshade(
       view, core::GroundScale(core::GroundSpacing{block.step_x, block.step_y}),
-      options.light, exaggeration, shade);
+      options.light, block.exaggeration, shade);
   for (std::size_t at = 0; at < values.size(); ++at) {
     const double height = values[at];
     const bool water =
@@ -194,9 +195,7 @@ Block MakeBlock(const core::HeightView& heights, const core::GroundScale& scale,
 // Ground to canvas by a parallel projection; fitted to the canvas's width.
 class View {
  public:
-  View(const Block& block, const PerspectiveOptions& options,
-       double exaggeration)
-      : block_(block), exaggeration_(exaggeration) {
+  View(const Block& block, const PerspectiveOptions& options) : block_(block) {
     const double turn = options.turn_deg * std::numbers::pi / 180;
     const double tilt = options.tilt_deg * std::numbers::pi / 180;
     turn_cos_ = std::cos(turn);
@@ -223,7 +222,7 @@ class View {
   Corner Rotated(std::int64_t i, std::int64_t j, double height) const {
     const double east = block_.step_x * static_cast<double>(i);
     const double south = block_.step_y * static_cast<double>(j);
-    const double up = exaggeration_ * (height - block_.minimum);
+    const double up = block_.exaggeration * (height - block_.minimum);
     const double right = east * turn_cos_ + south * turn_sin_;
     const double near = south * turn_cos_ - east * turn_sin_;
     return {right,
@@ -262,7 +261,6 @@ class View {
   }
 
   const Block& block_;
-  double exaggeration_;
   double turn_cos_, turn_sin_, tilt_cos_, tilt_sin_;
   double floor_;
   double left_, top_;
@@ -328,14 +326,11 @@ PerspectivePicture RenderPerspective(const core::HeightView& heights,
                                      const core::GroundScale& scale,
                                      const PerspectiveOptions& options) {
   const Block block = MakeBlock(heights, scale, options);
-  const double exaggeration = options.exaggeration.value_or(
-      block.relief() > 0 ? kReliefShare * block.longer_side() / block.relief()
-                         : 1);
-  const View view(block, options, exaggeration);
+  const View view(block, options);
   DepthCanvas canvas(options.width * kSupersampling, view.canvas_height());
   DrawTop(block, view, &canvas);
   DrawWalls(block, view, &canvas);
-  return {canvas.Shrunk(), exaggeration};
+  return {canvas.Shrunk(), block.exaggeration};
 }
 
 }  // namespace terrane::client

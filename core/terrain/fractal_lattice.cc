@@ -191,7 +191,7 @@ GridView FractalLattice::RefineCentres(int level, const Grid& parent, int first,
       DeviationOf(level, HalfStep::kCentre, parent, 1, 1, 0, scratch);
   step.row_scratch = scratch->ring.Shape(parent.view.stride, 4).data;
   ComputeCentres(step);
-  AddBuffers(level, HalfStep::kCentre, 2 * parent.x + 1, 2 * parent.y + 1, 2,
+  AddBuffers(HalfStep::kCentre, 2 * parent.x + 1, 2 * parent.y + 1, 2,
              parent.columns - 1, parent.rows - 1, step.centres, *scratch);
   return step.centres;
 }
@@ -230,7 +230,7 @@ FractalLattice::Grid FractalLattice::RefineEdges(int level, const Grid& parent,
     MendBorderRows(level, parent, centres, deviations.horizontal, *scratch,
                    &grid);
   }
-  AddBuffers(level, HalfStep::kEdge, grid.x, grid.y, 1, grid.columns, grid.rows,
+  AddBuffers(HalfStep::kEdge, grid.x, grid.y, 1, grid.columns, grid.rows,
              grid.view, *scratch);
   MeetConstraints(level, grid.x, grid.y, 1, grid.columns, grid.rows, grid.view,
                   scratch);
@@ -364,10 +364,9 @@ bool FractalLattice::OnBorder(const LatticePoint& point, int level) const {
 // Eq. 11: half way from p* to each of its M parents, the next level's points
 // get B = -P(p*) / M into their initial value. `plane` holds the points (x, y)
 // + spacing (i, j) of `level`.
-void FractalLattice::AddBuffers(int level, HalfStep step, std::int64_t x,
-                                std::int64_t y, std::int64_t spacing,
-                                int columns, int rows, GridView plane,
-                                const Scratch& scratch) const {
+void FractalLattice::AddBuffers(HalfStep step, std::int64_t x, std::int64_t y,
+                                std::int64_t spacing, int columns, int rows,
+                                GridView plane, const Scratch& scratch) const {
   for (const Buffered& buffered : scratch.buffered) {
     const LatticePoint& p = buffered.point;
     const bool centre = (p.x & 1) != 0 && (p.y & 1) != 0;

@@ -116,7 +116,7 @@ class FractalLattice {
   void MendBorderRows(int level, const Grid& parent, GridView centres,
                       const Deviation& horizontal, const Scratch& scratch,
                       Grid* child) const;
-  void AddBuffers(int level, HalfStep step, std::int64_t x, std::int64_t y,
+  void AddBuffers(HalfStep step, std::int64_t x, std::int64_t y,
                   std::int64_t spacing, int columns, int rows, GridView plane,
                   const Scratch& scratch) const;
   void MeetConstraints(int level, std::int64_t x, std::int64_t y,
