@@ -1,6 +1,7 @@
 #include "core/terrain/fractal_lattice.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -20,6 +21,28 @@ std::uint32_t StreamOf(int level, HalfStep step) {
 
 std::int64_t FloorHalf(std::int64_t x) { return x >> 1; }
 
+// Windows of at most this size are worth a checkpoint, from this level on.
+constexpr std::int64_t kCheckpointSize = 16;
+constexpr int kLeastCheckpointLevel = 3;
+
+bool Contains(const Window& outer, const Window& inner) {
+  return inner.x >= outer.x && inner.y >= outer.y &&
+         inner.x + inner.width <= outer.x + outer.width &&
+         inner.y + inner.height <= outer.y + outer.height;
+}
+
+// The window and what tiles to the right and below will need.
+Window Widened(const Window& window) {
+  return {window.x, window.y, window.width + 2 * kCheckpointSize,
+          window.height + kCheckpointSize};
+}
+
+// Tells one lattice from another in a scratch; never used twice.
+std::uint64_t NextId() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
+
 float DeviationAt(const Deviation& deviation, int i, int j) {
   return deviation.varies() ? deviation.per_point.At(i, j) : deviation.uniform;
 }
@@ -32,6 +55,7 @@ FractalLattice::FractalLattice(
     : config_(std::move(config)),
       model_(std::move(model)),
       constraints_(std::move(constraints)),
+      id_(NextId()),
       stencil_(config_.source == FractalSource::kSubdivision
                    ? Stencil::kSubdivision
                    : Stencil::kMidpoint),
@@ -96,9 +120,25 @@ FractalLattice::Grid FractalLattice::Compute(int level, const Window& window,
                                              const std::stop_token& stop,
                                              Scratch* scratch) const {
   const std::vector<Window> windows = Ancestors(level, window);
-  scratch->buffered.clear();
-  Grid grid = Level0(windows.back(), scratch);
-  for (int n = 1; n <= level; ++n) {
+  const int start = CheckpointLevel(windows);
+  if (start == 0) {
+    return Descend(Level0(windows.back(), scratch), 0, windows, stop, scratch);
+  }
+  const Window& needed = windows[static_cast<std::size_t>(level - start)];
+  if (!UpdateCheckpoint(start, needed, stop, scratch)) return {};
+  const Checkpoint& checkpoint = scratch->checkpoint;
+  scratch->buffered = checkpoint.buffered;
+  return Descend(Crop(checkpoint.grid, needed), start, windows, stop, scratch);
+}
+
+// From a grid of level `start` to the window of the finest level,
+// windows.front().
+FractalLattice::Grid FractalLattice::Descend(Grid grid, int start,
+                                             const std::vector<Window>& windows,
+                                             const std::stop_token& stop,
+                                             Scratch* scratch) const {
+  const auto level = static_cast<int>(windows.size()) - 1;
+  for (int n = start + 1; n <= level; ++n) {
     if (stop.stop_requested()) return {};
     const GridView child = scratch->grids[n % 2].Shape(
         2 * (grid.columns - 2 * margin_), 2 * (grid.rows - 2 * margin_));
@@ -108,6 +148,48 @@ FractalLattice::Grid FractalLattice::Compute(int level, const Window& window,
                 windows[static_cast<std::size_t>(level - n)]);
   }
   return grid;
+}
+
+// The finest level where the window is small: from there up, neighbouring tiles
+// share nearly everything. 0: too near the top to be worth keeping.
+int FractalLattice::CheckpointLevel(const std::vector<Window>& windows) const {
+  // SUCCESSIVE moves parents in place.
+  if (config_.source == FractalSource::kSuccessive) return 0;
+  const auto level = static_cast<int>(windows.size()) - 1;
+  for (int n = level; n >= kLeastCheckpointLevel; --n) {
+    const Window& window = windows[static_cast<std::size_t>(level - n)];
+    if (std::max(window.width, window.height) <= kCheckpointSize) return n;
+  }
+  return 0;
+}
+
+// Makes the scratch's checkpoint hold `needed` at `level`. False: stopped.
+bool FractalLattice::UpdateCheckpoint(int level, const Window& needed,
+                                      const std::stop_token& stop,
+                                      Scratch* scratch) const {
+  Checkpoint& checkpoint = scratch->checkpoint;
+  const bool same_level =
+      checkpoint.lattice == id_ && checkpoint.level == level;
+  if (same_level && Contains(checkpoint.window, needed)) return true;
+  // A single tile pays for its own ancestors only; who asks for a second one on
+  // the same level is likely to go on.
+  const Window window = same_level ? Widened(needed) : needed;
+  checkpoint.lattice = 0;
+  const std::vector<Window> windows = Ancestors(level, window);
+  const Grid made =
+      Descend(Level0(windows.back(), scratch), 0, windows, stop, scratch);
+  if (made.view.data == nullptr) return false;
+  const GridView kept = checkpoint.buffer.Shape(made.columns, made.rows);
+  for (int j = 0; j < made.rows; ++j) {
+    std::copy_n(made.view.Row(j), made.columns, kept.Row(j));
+  }
+  checkpoint.grid = made;
+  checkpoint.grid.view = kept;
+  checkpoint.buffered = scratch->buffered;
+  checkpoint.lattice = id_;
+  checkpoint.level = level;
+  checkpoint.window = window;
+  return true;
 }
 
 FractalLattice::Grid FractalLattice::Crop(const Grid& grid,
@@ -122,6 +204,7 @@ FractalLattice::Grid FractalLattice::Crop(const Grid& grid,
 
 FractalLattice::Grid FractalLattice::Level0(const Window& window,
                                             Scratch* scratch) const {
+  scratch->buffered.clear();
   const Grid grid = {scratch->grids[0].Shape(window.width, window.height),
                      window.x, window.y, static_cast<int>(window.width),
                      static_cast<int>(window.height)};

@@ -46,6 +46,23 @@ class FractalLattice {
     float value = 0;  // P(p*) before it became 0
   };
 
+  // A computed rectangle of one level: view(0, 0) is point (x, y).
+  struct Grid {
+    GridView view;
+    std::int64_t x = 0, y = 0;
+    int columns = 0, rows = 0;
+  };
+  // The last coarse ancestors that were computed, for the next tile nearby:
+  // tiles share them, and they cost as much as a small tile does.
+  struct Checkpoint {
+    std::uint64_t lattice = 0;  // whose they are; 0: nobody's
+    int level = 0;
+    Window window;
+    GridBuffer buffer;
+    Grid grid;
+    std::vector<Buffered> buffered;
+  };
+
   struct Scratch {
     GridBuffer grids[2];
     GridBuffer centres, ring;
@@ -55,6 +72,7 @@ class FractalLattice {
     std::vector<RowKey> even_keys, odd_keys;
     std::vector<LatticePoint> found;
     std::vector<Buffered> buffered;
+    Checkpoint checkpoint;
   };
 
   FractalLattice(Config config, DeviationModel model,
@@ -75,12 +93,6 @@ class FractalLattice {
                               std::int64_t height) const;
 
  private:
-  // A computed rectangle of one level: view(0, 0) is point (x, y).
-  struct Grid {
-    GridView view;
-    std::int64_t x = 0, y = 0;
-    int columns = 0, rows = 0;
-  };
   // One half step's deviations: horizontal edges, vertical edges, corners and
   // centres, as far as they are displaced in it.
   struct EdgeDeviations {
@@ -92,6 +104,11 @@ class FractalLattice {
   Grid Level0(const Window& window, Scratch* scratch) const;
   Grid Compute(int level, const Window& window, const std::stop_token& stop,
                Scratch* scratch) const;
+  Grid Descend(Grid grid, int start, const std::vector<Window>& windows,
+               const std::stop_token& stop, Scratch* scratch) const;
+  int CheckpointLevel(const std::vector<Window>& windows) const;
+  bool UpdateCheckpoint(int level, const Window& needed,
+                        const std::stop_token& stop, Scratch* scratch) const;
   static Grid Crop(const Grid& grid, const Window& window);
   Grid Refine(int level, const Grid& parent, GridView child,
               Scratch* scratch) const;
@@ -127,6 +144,7 @@ class FractalLattice {
   Config config_;
   DeviationModel model_;
   std::shared_ptr<const DiscreteConstraints> constraints_;
+  std::uint64_t id_;
   Stencil stencil_;
   int margin_;
 };
