@@ -14,8 +14,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 readonly dem=tests/data/jacksboro-3arcsec-4326.tif
 readonly level=3
 readonly out=out/quickstart
-readonly server=build/release/server/terrane-server
-readonly terrane=build/release/client/terrane
+readonly server=build/release/bin/terrane-server
+readonly terrane=build/release/bin/terrane
 
 serve=false
 case "${1:-}" in
@@ -42,7 +42,7 @@ trap stop_server EXIT
 
 # Starts the server on a free port and sets `address` to where it listens.
 start_server() {
-  local log="${out}/server.log" waited
+  local log=out/quickstart-server.log waited
   "${server}" --listen 127.0.0.1:0 >"${log}" 2>&1 &
   server_pid=$!
   for ((waited = 0; waited < 200; ++waited)); do
@@ -71,13 +71,16 @@ echo "terrane-server is listening on ${address}"
 
 step "Refining ${dem} by 2^${level} over the network"
 refine=("${terrane}" terrain --server "${address}" --dem "${dem}" --level "${level}")
+echo "A GeoTIFF, in the model's own coordinate reference system:"
 "${refine[@]}" --out "${out}/jacksboro-10m.tif"
-"${refine[@]}" --tiles --tile-size 513 --out "${out}/tiles-r16/jacksboro.r16"
-"${refine[@]}" --tiles --tile-size 513 --out "${out}/tiles-f32/jacksboro.f32"
+echo "Tiles for a game engine, 16-bit and float, that share their edges:"
+"${refine[@]}" --tiles all --tile-size 513 --out "${out}/tiles/jacksboro_x{x}_y{y}.r16"
+"${refine[@]}" --tiles all --tile-size 513 --out "${out}/tiles/jacksboro_x{x}_y{y}.f32"
+echo "Hillshades of the model and of the result, side by side:"
 "${terrane}" render --side-by-side "${dem}" "${out}/jacksboro-10m.tif" --out "${out}/hillshade.png"
 
-step "Wrote"
-du -ah "${out}" | sort -k2
+step "Wrote into ${out} in ${SECONDS} s"
+du --human-readable --apparent-size "${out}"/*
 
 if ${serve}; then
   step "The server goes on; Ctrl-C stops it. Ask it from another terminal:"
@@ -88,6 +91,6 @@ if ${serve}; then
 HELP
   wait "${server_pid}"
 else
-  step "Stopping the server"
   stop_server
+  echo "The server has stopped."
 fi
