@@ -12,6 +12,7 @@
 #include "client/raw_heights.h"
 #include "client/tiff_sink.h"
 #include "core/codec/image_codec.h"
+#include "core/grid/height_codec.h"
 
 namespace terrane::client {
 namespace {
@@ -21,8 +22,6 @@ static_assert(std::endian::native == std::endian::little);
 
 // .png and .exr are built in memory: 1 GiB of floats.
 constexpr std::int64_t kMaxImageSamples = std::int64_t{1} << 28;
-
-constexpr double kSteps = 65535;
 
 struct NamedFormat {
   const char* extension;
@@ -152,20 +151,11 @@ class SpoolSink : public HeightSink {
   }
 
  private:
-  // Rounds to the nearest of the 65536 heights of the range; 0 without data.
   void Quantise(std::span<const float> heights, const HeightRange& range,
                 std::span<std::uint16_t> steps) {
-    const double scale = kSteps / (range.maximum - range.minimum);
-    for (std::size_t i = 0; i < heights.size(); ++i) {
-      const double height = heights[i];
-      const double inside = std::clamp(height, range.minimum, range.maximum);
-      clipped_ += inside < height || inside > height ? 1 : 0;
-      nodata_ += std::isnan(height) ? 1 : 0;
-      steps[i] = std::isnan(height)
-                     ? std::uint16_t{0}
-                     : static_cast<std::uint16_t>(
-                           (inside - range.minimum) * scale + 0.5);
-    }
+    clipped_ +=
+        core::EncodeUint16(heights, range.minimum, range.maximum, steps);
+    nodata_ += core::MeasureHeights(heights).nodata_samples;
   }
 
   absl::Status WriteR16(const HeightRange& range) {

@@ -38,6 +38,18 @@ Rgb Mix(const Rgb& from, const Rgb& to, double share) {
           from.blue + share * (to.blue - from.blue)};
 }
 
+Picture Resized(const Picture& picture, int width, int height) {
+  const OIIO::ImageBuf source(
+      OIIO::ImageSpec(picture.width, picture.height, 3, OIIO::TypeDesc::UINT8),
+      const_cast<std::uint8_t*>(picture.values.data()));
+  Picture result(width, height, 3);
+  OIIO::ImageBuf target(
+      OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::UINT8),
+      result.values.data());
+  OIIO::ImageBufAlgo::resize(target, source);
+  return result;
+}
+
 Canvas::Canvas(int width, int height, const Rgb& background)
     : picture_(width, height, 3) {
   FillBox(0, 0, width, height, background);

@@ -23,6 +23,9 @@ Rgb Mix(const Rgb& from, const Rgb& to, double share);
 
 using Picture = core::Image<std::uint8_t>;
 
+// The picture at another size, each pixel a weighted mean of those it covers.
+Picture Resized(const Picture& picture, int width, int height);
+
 struct PixelPoint {
   double x = 0;
   double y = 0;

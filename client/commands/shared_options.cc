@@ -1,0 +1,160 @@
+#include "client/commands/shared_options.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+#include <map>
+#include <thread>
+
+#include "client/local_backend.h"
+#include "client/remote_backend.h"
+
+namespace terrane::client {
+namespace {
+
+const std::map<std::string, v1::FractalSource> kSources = {
+    {"midpoint", v1::FRACTAL_SOURCE_MIDPOINT},
+    {"successive", v1::FRACTAL_SOURCE_SUCCESSIVE},
+    {"subdivision", v1::FRACTAL_SOURCE_SUBDIVISION}};
+
+const std::map<std::string, v1::HeightMapping> kMappings = {
+    {"boltzmann", v1::HEIGHT_MAPPING_BOLTZMANN},
+    {"linear", v1::HEIGHT_MAPPING_LINEAR}};
+
+const std::map<std::string, v1::Sampling> kSamplings = {
+    {"point", v1::SAMPLING_POINT}, {"area", v1::SAMPLING_AREA}};
+
+}  // namespace
+
+void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
+  CLI::Option* server = command
+                            ->add_option("--server", options->server,
+                                         "Server to ask, as host:port")
+                            ->envname("TERRANE_SERVER")
+                            ->capture_default_str()
+                            ->group("Connection");
+  command
+      ->add_flag("--local", options->local,
+                 "Generate in this process, without a server")
+      ->excludes(server)
+      ->group("Connection");
+  command
+      ->add_option("--threads", options->threads,
+                   "Threads of --local (default: every core)")
+      ->check(CLI::Range(1, 1024))
+      ->group("Connection");
+}
+
+std::unique_ptr<Backend> MakeBackend(const ConnectionOptions& options) {
+  if (!options.local) return std::make_unique<RemoteBackend>(options.server);
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::make_unique<LocalBackend>(
+      options.threads > 0 ? options.threads : std::max(cores, 1));
+}
+
+void AddRecipeOptions(CLI::App* command, TerrainOptions* options) {
+  CLI::Option* preset =
+      command
+          ->add_option("--preset", options->preset,
+                       "Preset by name; `terrane presets` lists them")
+          ->group("Terrain");
+  command
+      ->add_option("--recipe", options->recipe_file,
+                   "Recipe file: a TerrainRecipe as JSON")
+      ->check(CLI::ExistingFile)
+      ->excludes(preset)
+      ->group("Terrain");
+  command
+      ->add_option("--seed", options->seed,
+                   "Another world of the same kind: any 64-bit number")
+      ->group("Terrain");
+  command
+      ->add_option("--source", options->source,
+                   "Fractal: midpoint, successive or subdivision")
+      ->transform(CLI::CheckedTransformer(kSources))
+      ->group("Terrain");
+  command
+      ->add_option("--mapping", options->mapping,
+                   "Fractal to height: boltzmann or linear")
+      ->transform(CLI::CheckedTransformer(kMappings))
+      ->group("Terrain");
+  command
+      ->add_option("--roughness", options->roughness,
+                   "Hurst exponent H in (0, 1), larger is smoother; auto: "
+                   "measured on the elevation model")
+      ->group("Terrain");
+  command
+      ->add_option("--fidelity", options->fidelity,
+                   "T in squared height units: 0 is the macro shape itself")
+      ->group("Terrain");
+}
+
+void AddTerrainOptions(CLI::App* command, TerrainOptions* options) {
+  AddRecipeOptions(command, options);
+  CLI::Option* dem =
+      command
+          ->add_option("--dem", options->dem_file,
+                       "Elevation model to refine: any raster that GDAL reads")
+          ->excludes("--preset")
+          ->excludes("--recipe")
+          ->group("Terrain");
+  command->add_option("--band", options->dem_band, "Band of --dem, from 1")
+      ->check(CLI::Range(1, 65535))
+      ->needs(dem)
+      ->group("Terrain");
+  command
+      ->add_option("--crs", options->dem_crs,
+                   "Warp --dem to this CRS first, such as EPSG:32616 (default: "
+                   "its own grid, so that its posts stay exact)")
+      ->needs(dem)
+      ->group("Terrain");
+  command
+      ->add_flag("--no-refine", options->no_refine,
+                 "Take --dem as a macro shape only: posts do not stay exact")
+      ->needs(dem)
+      ->group("Terrain");
+}
+
+void AddExtentOptions(CLI::App* command, ExtentOptions* options) {
+  command
+      ->add_option("--level", options->level,
+                   "Each level halves the spacing (default: the preset's "
+                   "view, 3 with --dem, else 0)")
+      ->check(CLI::Range(0, 40))
+      ->group("Samples");
+  command
+      ->add_option("--window", options->window,
+                   "Samples X,Y,WIDTH,HEIGHT of that level (default: all of a "
+                   "bounded domain)")
+      ->delimiter(',')
+      ->expected(4)
+      ->type_name("X,Y,W,H")
+      ->group("Samples");
+  command
+      ->add_option("--sampling", options->sampling,
+                   "point: on the lattice; area: at the cells' centres")
+      ->transform(CLI::CheckedTransformer(kSamplings))
+      ->default_str("point")
+      ->group("Samples");
+}
+
+v1::Window WindowOf(const std::vector<std::int64_t>& numbers) {
+  v1::Window window;
+  window.set_x(numbers[0]);
+  window.set_y(numbers[1]);
+  window.set_width(numbers[2]);
+  window.set_height(numbers[3]);
+  return window;
+}
+
+std::string JsonLine(const google::protobuf::Message& message) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.preserve_proto_field_names = true;
+  options.always_print_primitive_fields = true;
+  std::string text;
+  // Only a malformed Any could fail, and these messages hold none.
+  (void)google::protobuf::util::MessageToJsonString(message, &text, options);
+  return text;
+}
+
+}  // namespace terrane::client
