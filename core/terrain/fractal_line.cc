@@ -66,13 +66,18 @@ std::span<const float> FractalLine::Points(int level, std::int64_t first,
     if (stop.stop_requested()) return {};
     std::vector<float>& values = scratch->lines[n % 2];
     Refine(n, line, scratch->lines[(n - 1) % 2], &values, scratch);
-    line = {2 * (line.first + kMargin), 2 * (line.count - 1 - 2 * kMargin)};
+    // Whole cells are refined; what stands over the line that was asked for
+    // would grow with every further level.
+    const Line& needed = lines[static_cast<std::size_t>(level - n)];
+    const std::int64_t first_refined = 2 * (line.first + kMargin);
+    values.erase(values.begin(),
+                 values.begin() + (needed.first - first_refined));
+    values.resize(static_cast<std::size_t>(needed.count));
+    line = needed;
     AddBuffers(line, &values, scratch);
     MeetConstraints(n, line, &values, scratch);
   }
-  return std::span(scratch->lines[level % 2])
-      .subspan(static_cast<std::size_t>(first - line.first),
-               static_cast<std::size_t>(count));
+  return scratch->lines[level % 2];
 }
 
 void FractalLine::FillLevel0(const Line& line,
