@@ -10,26 +10,25 @@ namespace {
 
 constexpr double kLn2 = 0x1.62e42fefa39efp-1;
 constexpr double kLog2E = 0x1.71547652b82fep+0;
+// ln 2 in two parts; the first has 32 bits, so its product with an exponent is
+// exact.
+constexpr double kLn2High = 0x1.62e42feep-1;
+constexpr double kLn2Low = 0x1.a39ef35793c76p-33;
 
-}  // namespace
-
-double DetExp2(double x) {
-  if (std::isnan(x)) return x;
-  if (x >= 1024.0) return std::numeric_limits<double>::infinity();
-  if (x < -1080.0) return 0.0;
-  const double whole = std::nearbyint(x);
-  // e^r with r = (x - whole) ln 2 in [-0.35, 0.35]: Taylor to r^13 leaves less
-  // than 2^-60.
-  const double r = (x - whole) * kLn2;
+// 2^whole e^r for r in [-0.35, 0.35]: Taylor to r^14 leaves less than 2^-60.
+double ScaledExp(double r, double whole) {
   double sum = 1.0;
   for (int k = 14; k >= 1; --k) sum = 1.0 + sum * r / k;
   return std::ldexp(sum, static_cast<int>(whole));
 }
 
-double DetLog2(double x) {
-  if (std::isnan(x) || x < 0) return std::numeric_limits<double>::quiet_NaN();
-  if (x == 0) return -std::numeric_limits<double>::infinity();
-  if (std::isinf(x)) return x;
+// log2 x = exponent + fraction, fraction in [-0.5, 0.5], for finite x > 0.
+struct SplitLog2 {
+  int exponent;
+  double fraction;
+};
+
+SplitLog2 SplitLog2Of(double x) {
   int exponent = 0;
   double m = std::frexp(x, &exponent);  // [0.5, 1)
   if (m < 0x1.6a09e667f3bcdp-1) {       // sqrt(1/2)
@@ -42,16 +41,58 @@ double DetLog2(double x) {
   const double t2 = t * t;
   double sum = 0;
   for (int k = 23; k >= 1; k -= 2) sum = sum * t2 + 1.0 / k;
-  return exponent + 2.0 * t * sum * kLog2E;
+  return {exponent, 2.0 * t * sum * kLog2E};
+}
+
+// The upper half of a double's digits.
+double UpperHalf(double value) {
+  constexpr std::uint64_t kMask = ~((std::uint64_t{1} << 27) - 1);
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) & kMask);
+}
+
+}  // namespace
+
+double DetExp2(double x) {
+  if (std::isnan(x)) return x;
+  if (x >= 1024.0) return std::numeric_limits<double>::infinity();
+  if (x < -1080.0) return 0.0;
+  const double whole = std::nearbyint(x);
+  return ScaledExp((x - whole) * kLn2, whole);
+}
+
+double DetLog2(double x) {
+  if (std::isnan(x) || x < 0) return std::numeric_limits<double>::quiet_NaN();
+  if (x == 0) return -std::numeric_limits<double>::infinity();
+  if (std::isinf(x)) return x;
+  const SplitLog2 log = SplitLog2Of(x);
+  return log.exponent + log.fraction;
 }
 
 double DetPow(double x, double y) {
   if (y == 0) return 1.0;
   if (x == 0) return y > 0 ? 0.0 : std::numeric_limits<double>::infinity();
-  return DetExp2(y * DetLog2(x));
+  if (!std::isfinite(x) || !std::isfinite(y) || x < 0) {
+    return DetExp2(y * DetLog2(x));
+  }
+  // The exponent y log2 x, in parts so that its digits after the point are not
+  // lost when it is large.
+  const SplitLog2 log = SplitLog2Of(x);
+  const double whole = std::nearbyint(y * (log.exponent + log.fraction));
+  if (whole > 1024.0) return std::numeric_limits<double>::infinity();
+  if (whole < -1080.0) return 0.0;
+  const double high = UpperHalf(y);
+  const double rest = (high * log.exponent - whole) +
+                      (y - high) * log.exponent + y * log.fraction;
+  return ScaledExp(rest * kLn2, whole);
 }
 
-double DetExp(double x) { return DetExp2(x * kLog2E); }
+double DetExp(double x) {
+  if (std::isnan(x)) return x;
+  if (x >= 710.0) return std::numeric_limits<double>::infinity();
+  if (x < -746.0) return 0.0;
+  const double whole = std::nearbyint(x * kLog2E);
+  return ScaledExp((x - whole * kLn2High) - whole * kLn2Low, whole);
+}
 
 double DetLog(double x) { return DetLog2(x) * kLn2; }
 

@@ -1,9 +1,10 @@
 // Deterministic elementary functions.
 //
-// libm's results differ between versions and CPUs; Terrane's must not. These are
-// built from IEEE operations and polynomials only, so they give the same bits on
-// every machine, and are within 4 ulp of the true value. Double precision; safe
-// from any thread. Compile with -ffp-contract=off (all of core is).
+// libm's results differ between versions and CPUs; Terrane's must not. These
+// are built from IEEE operations and polynomials only, so they give the same
+// bits on every machine, and are within 4 ulp of the true value. Double
+// precision; safe from any thread. Compile with -ffp-contract=off (all of core
+// is).
 #ifndef TERRANE_CORE_BASE_DET_MATH_H_
 #define TERRANE_CORE_BASE_DET_MATH_H_
 
@@ -13,7 +14,8 @@ namespace terrane::core {
 double DetExp2(double x);
 // log2(x) for x > 0; -infinity for 0, NaN below.
 double DetLog2(double x);
-// x^y for x >= 0; 0^0 = 1, 0^y = 0 for y > 0.
+// x^y for x >= 0; 0^0 = 1, 0^y = 0 for y > 0. Within 4 ulp for |y| <= 4; the
+// error grows with |y| beyond.
 double DetPow(double x, double y);
 // e^x.
 double DetExp(double x);
