@@ -1,0 +1,69 @@
+// Server: the services of an Actor on a gRPC port, with health and an ordered
+// end.
+//
+// Threads: Start, Drain and the destructor from one thread; calls are served on
+// gRPC's threads and generated on the worker pool's.
+#ifndef TERRANE_SERVER_SERVICE_SERVER_H_
+#define TERRANE_SERVER_SERVICE_SERVER_H_
+
+#include <grpcpp/channel.h>
+#include <grpcpp/server.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "server/actor/actor.h"
+#include "server/service/call_context.h"
+#include "server/service/info_service.h"
+#include "server/service/raster_service.h"
+#include "server/service/terrain_service.h"
+
+namespace terrane::server {
+
+struct ServerOptions {
+  std::string listen = "127.0.0.1:50051";  // port 0 takes a free one
+  Limits limits;
+  int workers = 1;
+  bool reflection = false;
+};
+
+class Server {
+ public:
+  // Serves `actor` and writes a line per call to `log`; both outlive the
+  // server. Errors: UNAVAILABLE when the address cannot be listened on.
+  static absl::StatusOr<std::unique_ptr<Server>> Start(
+      const ServerOptions& options, Actor* actor, CallLog* log);
+  // Cancels what is still running.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  // The port that was taken.
+  int port() const { return port_; }
+
+  // The ordered end: health says NOT_SERVING, `grace` lets balancers see it,
+  // then no new call is taken and the running ones have `drain` to end before
+  // they are cancelled.
+  void Drain(std::chrono::milliseconds grace, std::chrono::milliseconds drain);
+
+ private:
+  Server(const ServerOptions& options, Actor* actor, CallLog* log);
+
+  void SetServing(bool serving);
+
+  StreamGate gate_;
+  WorkerPool workers_;
+  ServiceParts parts_;
+  TerrainServiceImpl terrain_service_;
+  RasterServiceImpl raster_service_;
+  InfoServiceImpl info_service_;
+  int port_ = 0;
+  // Last, so that it goes first: no call outlives what it works with.
+  std::unique_ptr<grpc::Server> server_;
+};
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_SERVICE_SERVER_H_

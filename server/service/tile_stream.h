@@ -1,0 +1,91 @@
+// TileStream: one StreamTiles rpc.
+//
+// At most two messages are in hand: one being written, and one ahead of it,
+// made or being made. A slow reader therefore costs two tiles, whatever it
+// asked for, and one outstanding write is all the back-pressure there is. Each
+// tile is one task of the worker pool, so streams take turns.
+//
+// What happens next is decided under the mutex and done outside it (gRPC may
+// run a reaction inside a call into it); whoever decided to write or to finish
+// is the only one to do so. Finish comes exactly once, when nothing is being
+// written and no worker is at it: at the end, after a failure, or after
+// OnCancel, which stops the generation within a millisecond.
+//
+// Lifetime: owns itself until OnDone; a queued task shares it.
+#ifndef TERRANE_SERVER_SERVICE_TILE_STREAM_H_
+#define TERRANE_SERVER_SERVICE_TILE_STREAM_H_
+
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+
+#include "server/service/call_context.h"
+
+namespace terrane::server {
+
+class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+ public:
+  static grpc::ServerWriteReactor<grpc::ByteBuffer>* Start(
+      const ServiceParts& parts, grpc::CallbackServerContext* context,
+      const grpc::ByteBuffer& request);
+
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  TileStream(const ServiceParts& parts, grpc::CallbackServerContext* context,
+             const grpc::ByteBuffer& request);
+
+  void EnterGate();
+  // Queues the next task: opening the job first, then a tile each. The stream
+  // may end at any time from here on, so the task brings its own share of it.
+  static void Submit(std::shared_ptr<TileStream> stream);
+  void RunTask(Clock::time_point submitted, core::TileScratch* scratch);
+  // The work of a task, without the mutex.
+  absl::Status Open();
+  absl::Status MakeTile(core::TileScratch* scratch);
+  // Ends the stream with a status, unless it has one.
+  void EndWith(const absl::Status& status);
+  // Does what can be done now: write, generate, finish. Takes the lock over.
+  void Advance(std::unique_lock<std::mutex> lock);
+  bool MayGenerate() const;
+
+  const ServiceParts& parts_;
+  grpc::CallbackServerContext* const context_;
+  std::stop_source stop_;
+  std::shared_ptr<TileStream> self_;
+
+  // Of the task at work, one at a time.
+  grpc::ByteBuffer request_;
+  std::shared_ptr<const TileJob> job_;
+  std::int64_t next_tile_ = 0;
+  v1::HeightTile tile_;
+  grpc::ByteBuffer made_;
+
+  // Of the write under way.
+  grpc::ByteBuffer outgoing_;
+
+  std::mutex mutex_;
+  CallRecord record_;
+  std::optional<StreamGate::Ticket> ticket_;
+  std::optional<grpc::ByteBuffer> ahead_;  // made, not yet written
+  bool queued_ = false;                    // a task waits for a worker
+  bool running_ = false;                   // a worker is at it
+  bool writing_ = false;
+  bool all_made_ = false;
+  std::optional<absl::Status> end_;  // set early by a failure or OnCancel
+  bool finished_ = false;
+};
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_SERVICE_TILE_STREAM_H_

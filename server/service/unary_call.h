@@ -1,0 +1,82 @@
+// UnaryCall: one unary rpc on the worker pool.
+//
+// gRPC's thread queues the work and returns. Cancelled (by the client or its
+// deadline) before a worker took it, the call ends at once; after that the
+// work's stop token is set, and the call ends when the work does, within a
+// millisecond. So the request and response that gRPC owns are never touched
+// after the end.
+//
+// Lifetime: owns itself until OnDone; a queued task shares it.
+#ifndef TERRANE_SERVER_SERVICE_UNARY_CALL_H_
+#define TERRANE_SERVER_SERVICE_UNARY_CALL_H_
+
+#include <grpcpp/support/server_callback.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <utility>
+
+#include "server/service/call_context.h"
+#include "server/service/status.h"
+
+namespace terrane::server {
+
+class UnaryCall final : public grpc::ServerUnaryReactor {
+ public:
+  // Fills in the response that gRPC gave the handler, and the record.
+  using Work = std::function<absl::Status(std::stop_token, CallRecord*)>;
+
+  static grpc::ServerUnaryReactor* Start(const ServiceParts& parts,
+                                         const char* method,
+                                         grpc::CallbackServerContext* context,
+                                         Work work);
+
+  void OnCancel() override;
+  void OnDone() override;
+
+ private:
+  enum class State { kQueued, kRunning, kFinished };
+
+  UnaryCall(const ServiceParts& parts, const char* method,
+            grpc::CallbackServerContext* context, Work work)
+      : parts_(parts),
+        context_(context),
+        work_(std::move(work)),
+        record_(BeginCall(method, context)) {}
+
+  void Run();
+  void End(absl::Status status);
+
+  const ServiceParts& parts_;
+  grpc::CallbackServerContext* const context_;
+  const Work work_;
+  const std::chrono::steady_clock::time_point begin_ =
+      std::chrono::steady_clock::now();
+  std::stop_source stop_;
+  CallRecord record_;
+  std::mutex mutex_;
+  State state_ = State::kQueued;
+  std::shared_ptr<UnaryCall> self_;
+};
+
+// Work that makes its response from a StatusOr.
+template <typename Response, typename Make>
+UnaryCall::Work Answer(Response* response, Make make) {
+  return [response, make = std::move(make)](std::stop_token stop,
+                                            CallRecord* record) {
+    absl::StatusOr<Response> made = make(std::move(stop));
+    if (!made.ok()) return made.status();
+    if constexpr (requires { made->recipe_hash(); }) {
+      record->recipe_hash = made->recipe_hash();
+    }
+    *response = *std::move(made);
+    return absl::OkStatus();
+  };
+}
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_SERVICE_UNARY_CALL_H_
