@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
-#include <limits>
+#include <iterator>
 #include <utility>
 
 namespace terrane::core {
@@ -38,6 +38,29 @@ std::vector<Entry> MakeEntries(std::span<const Box> boxes) {
   return entries;
 }
 
+// An output iterator that keeps the ids of the entries it is given.
+class IdCollector {
+ public:
+  using iterator_category = std::output_iterator_tag;
+  using value_type = void;
+  using difference_type = std::ptrdiff_t;
+  using pointer = void;
+  using reference = void;
+
+  explicit IdCollector(std::vector<std::uint32_t>* ids) : ids_(ids) {}
+
+  IdCollector& operator=(const Entry& entry) {
+    ids_->push_back(entry.second);
+    return *this;
+  }
+  IdCollector& operator*() { return *this; }
+  IdCollector& operator++() { return *this; }
+  IdCollector& operator++(int) { return *this; }
+
+ private:
+  std::vector<std::uint32_t>* ids_;
+};
+
 }  // namespace
 
 class BoxIndex::Impl {
@@ -59,8 +82,15 @@ BoxIndex& BoxIndex::operator=(BoxIndex&&) noexcept = default;
 bool BoxIndex::Query(const Box& box, std::size_t most,
                      std::vector<std::uint32_t>* ids) const {
   ids->clear();
+  const TreeBox wanted = MakeBox(box);
+  if (most >= impl_->tree().size()) {
+    // Nothing to stop for: the plain query, which is the faster one.
+    impl_->tree().query(bgi::intersects(wanted), IdCollector(ids));
+    std::sort(ids->begin(), ids->end());
+    return true;
+  }
   const auto end = impl_->tree().qend();
-  for (auto it = impl_->tree().qbegin(bgi::intersects(MakeBox(box))); it != end;
+  for (auto it = impl_->tree().qbegin(bgi::intersects(wanted)); it != end;
        ++it) {
     if (ids->size() == most) return false;
     ids->push_back(it->second);

@@ -91,11 +91,11 @@ Box LineDistance::SampleBox(const Target& target,
   return box;
 }
 
-double LineDistance::SquaredTo(const Segment& segment, double x,
-                               double y) const {
+template <LineDistance::Norm kNorm>
+double LineDistance::SquaredTo(const Segment& segment, double x, double y) {
   const double ex = x - segment.x;
   const double ey = y - segment.y;
-  if (norm_ == Norm::kL2) {
+  if constexpr (kNorm == Norm::kL2) {
     const double t = std::clamp(
         (ex * segment.dx + ey * segment.dy) * segment.inverse_square, 0.0, 1.0);
     const double fx = ex - t * segment.dx;
@@ -115,6 +115,25 @@ double LineDistance::SquaredTo(const Segment& segment, double x,
     least = std::min(least, at(std::clamp(ey / segment.dy, 0.0, 1.0)));
   }
   return least * least;
+}
+
+template <LineDistance::Norm kNorm>
+void LineDistance::LowerRow(const Segment& segment, std::span<const double> x,
+                            double y, double* row) {
+  if (segment.inverse_square != 0) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      row[i] = std::min(row[i], SquaredTo<kNorm>(segment, x[i], y));
+    }
+    return;
+  }
+  // A point: the most frequent source of all, and short enough to vectorise.
+  const double ey = std::fabs(y - segment.y);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double ex = std::fabs(x[i] - segment.x);
+    const double squared =
+        kNorm == Norm::kL2 ? ex * ex + ey * ey : (ex + ey) * (ex + ey);
+    row[i] = std::min(row[i], squared);
+  }
 }
 
 double LineDistance::SquaredGap(const Box& segment, const Box& samples) const {
@@ -176,19 +195,22 @@ void LineDistance::Fill(const Target& target, const SampleRect& rect,
 
 void LineDistance::FillPlainly(const Target& target, const SampleRect& rect,
                                std::span<const Segment> candidates) const {
-  const double* x = target.grid.x.data() + rect.column_begin;
+  const std::span<const double> x =
+      std::span(target.grid.x).subspan(rect.column_begin, rect.columns());
   for (std::size_t j = rect.row_begin; j < rect.row_end; ++j) {
     const double y = ignores_y_ ? 0.0 : target.grid.y[j];
     double* row = target.out +
                   (j - target.whole.row_begin) * target.whole.columns() +
                   (rect.column_begin - target.whole.column_begin);
     for (const Segment& segment : candidates) {
-      for (std::size_t i = 0; i < rect.columns(); ++i) {
-        row[i] = std::min(row[i], SquaredTo(segment, x[i], y));
+      if (norm_ == Norm::kL2) {
+        LowerRow<Norm::kL2>(segment, x, y, row);
+      } else {
+        LowerRow<Norm::kL1>(segment, x, y, row);
       }
     }
     for (std::size_t i = 0; i < rect.columns(); ++i) {
-      if (row[i] > target.reach_squared) row[i] = kInfinity;
+      row[i] = row[i] > target.reach_squared ? kInfinity : row[i];
     }
   }
 }

@@ -61,7 +61,12 @@ class LineDistance {
   static Segment MakeSegment(const Vertex& a, const Vertex& b);
   // Where the rectangle's samples lie, as far as the distance is concerned.
   Box SampleBox(const Target& target, const SampleRect& rect) const;
-  double SquaredTo(const Segment& segment, double x, double y) const;
+  template <Norm kNorm>
+  static double SquaredTo(const Segment& segment, double x, double y);
+  // Lowers the squared distances of a row of samples to that of the segment.
+  template <Norm kNorm>
+  static void LowerRow(const Segment& segment, std::span<const double> x,
+                       double y, double* row);
   double SquaredGap(const Box& segment, const Box& samples) const;
   double SquaredFarthest(const Segment& segment, const Box& samples) const;
   // Fills `rect` from the candidates, splitting it while that leaves out many.

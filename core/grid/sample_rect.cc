@@ -23,6 +23,12 @@ std::pair<std::size_t, std::size_t> IndicesIn(const std::vector<double>& axis,
 
 }  // namespace
 
+SampleRect Intersection(const SampleRect& a, const SampleRect& b) {
+  return {std::max(a.column_begin, b.column_begin),
+          std::min(a.column_end, b.column_end),
+          std::max(a.row_begin, b.row_begin), std::min(a.row_end, b.row_end)};
+}
+
 SampleRect AllSamples(const SampleGrid& grid) {
   return {0, grid.x.size(), 0, grid.y.size()};
 }

@@ -48,6 +48,9 @@ struct SampleRect {
   }
 };
 
+// The samples that are in both; may be empty.
+SampleRect Intersection(const SampleRect& a, const SampleRect& b);
+
 // All samples of the grid.
 SampleRect AllSamples(const SampleGrid& grid);
 

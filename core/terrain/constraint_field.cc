@@ -19,7 +19,10 @@ constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 // What finding the sources of one sample costs, in units of finding the samples
 // of one source: with more sources than this times the samples in a grid's box,
 // as in a coarse grid over wide ground, samples look for their sources.
-constexpr std::size_t kSourcesPerSample = 2;
+constexpr std::size_t kSourcesPerSample = 4;
+
+// Samples that are evaluated together: their sums stay in the cache.
+constexpr std::size_t kBandSamples = 16384;
 
 // A source, ready to be evaluated.
 class Source {
@@ -41,16 +44,36 @@ class Source {
     distance_.Squared(grid, rect, reach_, out);
   }
 
-  // The term of eq. 15 before it is divided by M, at a distance within the
-  // reach.
-  double Pull(double squared_distance) const {
-    const double pull = difference_ / (1.0 + falloff_ * squared_distance);
-    if (!is_smooth_) return pull;
-    const double window = 1.0 - squared_distance / (reach_ * reach_);
-    return pull * (window * window);
+  // Adds the term of eq. 15 before it is divided by M, and 1 to M, to each
+  // sample of a row that is within reach.
+  void AddTo(std::span<const double> squared_distances, double* pulls,
+             double* counts) const {
+    if (is_smooth_) {
+      AddTerms<true>(squared_distances, pulls, counts);
+    } else {
+      AddTerms<false>(squared_distances, pulls, counts);
+    }
   }
 
  private:
+  // Without branches: out of reach adds 0 to both.
+  template <bool kSmooth>
+  void AddTerms(std::span<const double> squared_distances, double* pulls,
+                double* counts) const {
+    const double square_reach = reach_ * reach_;
+    for (std::size_t i = 0; i < squared_distances.size(); ++i) {
+      const bool reaches = squared_distances[i] != kInfinity;
+      const double squared = reaches ? squared_distances[i] : 0.0;
+      double pull = difference_ / (1.0 + falloff_ * squared);
+      if constexpr (kSmooth) {
+        const double window = 1.0 - squared / square_reach;
+        pull *= window * window;
+      }
+      pulls[i] += reaches ? pull : 0.0;
+      counts[i] += reaches ? 1.0 : 0.0;
+    }
+  }
+
   static LineDistance MakeDistance(const ContinuousConstraint& constraint,
                                    int dimensions) {
     std::vector<LineDistance::Vertex> vertices;
@@ -74,15 +97,41 @@ class Source {
   bool is_smooth_;
 };
 
-// Terms of the sources that reach one sample, added in the order of the
-// sources.
-struct Sum {
-  double pulls = 0;
-  double sources = 0;  // M of eq. 15
+// A band of samples being summed; the memory is reused from band to band.
+struct Band {
+  SampleRect rect;
+  // Terms of eq. 15 before they are divided by M, added in the order of the
+  // sources, and M itself.
+  std::vector<double> pulls;
+  std::vector<double> counts;
+  // Working memory.
+  std::vector<std::uint32_t> ids;
+  std::vector<double> distances;
 
-  void Add(double pull) {
-    pulls += pull;
-    sources += 1;
+  void Reset(const SampleRect& samples) {
+    rect = samples;
+    pulls.assign(rect.columns() * rect.rows(), 0.0);
+    counts.assign(rect.columns() * rect.rows(), 0.0);
+  }
+
+  // Adds a source to the samples of `part`.
+  void Add(const Source& source, const SampleGrid& grid,
+           const SampleRect& part) {
+    distances.resize(part.columns() * part.rows());
+    source.SquaredDistances(grid, part, distances.data());
+    for (std::size_t j = 0; j < part.rows(); ++j) {
+      const std::size_t first =
+          (part.row_begin + j - rect.row_begin) * rect.columns() +
+          part.column_begin - rect.column_begin;
+      source.AddTo(
+          std::span(distances).subspan(j * part.columns(), part.columns()),
+          pulls.data() + first, counts.data() + first);
+    }
+  }
+
+  bool reached() const {
+    return std::any_of(counts.begin(), counts.end(),
+                       [](double count) { return count > 0; });
   }
 };
 
@@ -133,77 +182,89 @@ class ConstraintField::Impl {
                 std::ptrdiff_t stride) const {
     const SampleRect all = AllSamples(grid);
     if (sources_.empty() || all.empty()) return false;
-    const std::size_t samples = all.columns() * all.rows();
-    std::vector<std::uint32_t> ids;
-    const bool few =
-        index_.Query(BoxOf(grid, all), kSourcesPerSample * samples, &ids);
-    if (few && ids.empty()) return false;
-    std::vector<Sum> sums(samples);
-    const bool reached =
-        few ? AddBySource(grid, ids, &sums) : AddBySample(grid, &sums);
-    if (!reached) return false;
-    for (std::size_t j = 0; j < all.rows(); ++j) {
-      float* row = out + static_cast<std::ptrdiff_t>(j) * stride;
-      for (std::size_t i = 0; i < all.columns(); ++i) {
-        row[i] = Value(sums[j * all.columns() + i]);
+    const std::size_t band_rows =
+        std::clamp<std::size_t>(kBandSamples / all.columns(), 1, all.rows());
+    const auto fill = [&](std::size_t first_row, std::size_t last_row) {
+      for (std::size_t j = first_row; j < last_row; ++j) {
+        std::fill_n(out + static_cast<std::ptrdiff_t>(j) * stride,
+                    all.columns(), static_cast<float>(background_));
+      }
+    };
+    Band band;
+    bool reached = false;
+    for (std::size_t row = 0; row < all.rows(); row += band_rows) {
+      SampleRect rect = all;
+      rect.row_begin = row;
+      rect.row_end = std::min(row + band_rows, all.rows());
+      if (SumBand(grid, rect, &band)) {
+        // Nothing is written before it is known that something reaches.
+        if (!reached) fill(0, row);
+        reached = true;
+        WriteBand(band, out, stride);
+      } else if (reached) {
+        fill(row, rect.row_end);
       }
     }
-    return true;
+    return reached;
   }
 
  private:
-  // Every source adds itself to the samples in its reach.
-  bool AddBySource(const SampleGrid& grid,
-                   const std::vector<std::uint32_t>& ids,
-                   std::vector<Sum>* sums) const {
-    bool reached = false;
-    std::vector<double> distances;
-    for (const std::uint32_t id : ids) {
-      const Source& source = sources_[id];
-      const SampleRect rect = SamplesIn(grid, source.ReachBox());
-      if (rect.empty()) continue;
-      distances.resize(rect.columns() * rect.rows());
-      source.SquaredDistances(grid, rect, distances.data());
-      const double* distance = distances.data();
-      for (std::size_t j = rect.row_begin; j < rect.row_end; ++j) {
-        Sum* row = sums->data() + j * grid.x.size();
-        for (std::size_t i = rect.column_begin; i < rect.column_end; ++i) {
-          const double squared = *distance++;
-          if (squared == kInfinity) continue;
-          row[i].Add(source.Pull(squared));
-          reached = true;
-        }
-      }
+  // Sums the sources over the samples of `rect`; false when none reaches them.
+  bool SumBand(const SampleGrid& grid, const SampleRect& rect,
+               Band* band) const {
+    const std::size_t samples = rect.columns() * rect.rows();
+    if (!index_.Query(BoxOf(grid, rect), kSourcesPerSample * samples,
+                      &band->ids)) {
+      band->Reset(rect);
+      AddBySample(grid, band);
+    } else if (!band->ids.empty()) {
+      band->Reset(rect);
+      AddBySource(grid, band);
+    } else {
+      return false;
     }
-    return reached;
+    return band->reached();
+  }
+
+  // Every source adds itself to the samples in its reach.
+  void AddBySource(const SampleGrid& grid, Band* band) const {
+    for (const std::uint32_t id : band->ids) {
+      const Source& source = sources_[id];
+      const SampleRect part =
+          Intersection(SamplesIn(grid, source.ReachBox()), band->rect);
+      if (!part.empty()) band->Add(source, grid, part);
+    }
   }
 
   // Every sample looks for the sources whose reach may hold it.
-  bool AddBySample(const SampleGrid& grid, std::vector<Sum>* sums) const {
-    bool reached = false;
-    std::vector<std::uint32_t> ids;
-    for (std::size_t j = 0; j < grid.y.size(); ++j) {
-      for (std::size_t i = 0; i < grid.x.size(); ++i) {
+  void AddBySample(const SampleGrid& grid, Band* band) const {
+    const SampleRect& rect = band->rect;
+    for (std::size_t j = rect.row_begin; j < rect.row_end; ++j) {
+      for (std::size_t i = rect.column_begin; i < rect.column_end; ++i) {
         const SampleRect here{i, i + 1, j, j + 1};
-        index_.Query(BoxOf(grid, here), kAny, &ids);
-        for (const std::uint32_t id : ids) {
-          double squared = 0;
-          sources_[id].SquaredDistances(grid, here, &squared);
-          if (squared == kInfinity) continue;
-          (*sums)[j * grid.x.size() + i].Add(sources_[id].Pull(squared));
-          reached = true;
+        index_.Query(BoxOf(grid, here), kAny, &band->ids);
+        for (const std::uint32_t id : band->ids) {
+          band->Add(sources_[id], grid, here);
         }
       }
     }
-    return reached;
   }
 
-  // Eq. 15.
-  float Value(const Sum& sum) const {
-    if (sum.sources == 0) return static_cast<float>(background_);
-    // Rounding must not leave the range that minimum() and maximum() promise.
-    return static_cast<float>(
-        std::clamp(background_ + sum.pulls / sum.sources, minimum_, maximum_));
+  // Eq. 15. Rounding must not leave the range that minimum() and maximum()
+  // promise; out of every reach the sum is 0.
+  void WriteBand(const Band& band, float* out, std::ptrdiff_t stride) const {
+    const std::size_t columns = band.rect.columns();
+    for (std::size_t j = 0; j < band.rect.rows(); ++j) {
+      const double* pulls = band.pulls.data() + j * columns;
+      const double* counts = band.counts.data() + j * columns;
+      float* row =
+          out + static_cast<std::ptrdiff_t>(band.rect.row_begin + j) * stride;
+      for (std::size_t i = 0; i < columns; ++i) {
+        const double value = background_ + pulls[i] / std::max(counts[i], 1.0);
+        row[i] =
+            static_cast<float>(std::min(std::max(value, minimum_), maximum_));
+      }
+    }
   }
 
   double background_;

@@ -54,12 +54,6 @@ std::unique_ptr<MacroShapePart> MakeShape(const MacroPart& part, int dimensions,
       part.shape);
 }
 
-SampleRect Intersection(const SampleRect& a, const SampleRect& b) {
-  return {std::max(a.column_begin, b.column_begin),
-          std::min(a.column_end, b.column_end),
-          std::max(a.row_begin, b.row_begin), std::min(a.row_end, b.row_end)};
-}
-
 }  // namespace
 
 class MacroShape::Impl {
