@@ -48,14 +48,15 @@ struct RenderCommand {
   std::optional<double> exaggeration;
   std::optional<double> water_level;
   std::vector<double> marks;
-  std::vector<double> light = {315, 45};
+  std::vector<double> light;  // azimuth, altitude; empty: by style
   double turn_deg = PerspectiveOptions().turn_deg;
   double tilt_deg = PerspectiveOptions().tilt_deg;
   std::optional<int> width;
   std::string title;
 };
 
-core::Light LightOf(const RenderCommand& command) {
+core::Light LightOf(const RenderCommand& command, const core::Light& usual) {
+  if (command.light.empty()) return usual;
   const double azimuth = command.light[0] * std::numbers::pi / 180;
   const double altitude = command.light[1] * std::numbers::pi / 180;
   return {std::sin(azimuth) * std::cos(altitude),
@@ -99,7 +100,7 @@ absl::StatusOr<Picture> DrawRaster(const RenderCommand& command,
     options.turn_deg = command.turn_deg;
     options.tilt_deg = command.tilt_deg;
     options.exaggeration = command.exaggeration;
-    options.light = LightOf(command);
+    options.light = LightOf(command, options.light);
     options.water_level = command.water_level;
     PerspectivePicture result = RenderPerspective(view, *scale, options);
     std::cerr << fmt::format("terrane: heights are drawn {:.3g} times\n",
@@ -110,7 +111,7 @@ absl::StatusOr<Picture> DrawRaster(const RenderCommand& command,
   options.style = style == v1::RENDER_STYLE_HILLSHADE ? ReliefStyle::kHillshade
                   : style == v1::RENDER_STYLE_GREY    ? ReliefStyle::kGrey
                                                       : ReliefStyle::kRelief;
-  options.light = LightOf(command);
+  options.light = LightOf(command, options.light);
   options.exaggeration = command.exaggeration.value_or(1);
   options.water_level = command.water_level;
   return WithSquarePixels(RenderRelief(view, *scale, options),
@@ -240,7 +241,7 @@ absl::StatusOr<Picture> DrawGenerated(const RenderCommand& command,
 std::string CaptionOf(const std::string& path, const PlacedRaster& placed,
                       const core::GroundScale& scale) {
   const core::GroundSpacing& spacing = scale.Row(placed.raster.height / 2);
-  return fmt::format("{}   {} × {} samples, {:.1f} × {:.1f} m",
+  return fmt::format("{}   {} x {} samples of {:.1f} x {:.1f} m",
                      std::filesystem::path(path).filename().string(),
                      placed.raster.width, placed.raster.height, spacing.x,
                      spacing.y);
@@ -263,7 +264,7 @@ absl::StatusOr<Picture> DrawSideBySide(const RenderCommand& command) {
   }
   SideBySideOptions options;
   options.panel_width = command.width.value_or(options.panel_width);
-  options.light = LightOf(command);
+  options.light = LightOf(command, options.light);
   options.exaggeration = command.exaggeration.value_or(1);
   std::vector<Panel> panels;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -297,11 +298,12 @@ void AddPictureOptions(CLI::App* app, RenderCommand* command) {
   app->add_option("--style", command->style,
                   "relief (default), hillshade, grey or perspective; profiles "
                   "are always plotted")
-      ->transform(CLI::CheckedTransformer(kStyles))
+      ->transform(OneOf(kStyles))
+      ->type_name("NAME")
       ->group("Picture");
   app->add_option("--exaggeration", command->exaggeration,
                   "Multiplies the heights (default: 1; perspective: so that "
-                  "the relief is a sixth of the width)")
+                  "the relief is a ninth of the width)")
       ->check(CLI::PositiveNumber)
       ->group("Picture");
   app->add_option("--water-level", command->water_level,
@@ -312,10 +314,11 @@ void AddPictureOptions(CLI::App* app, RenderCommand* command) {
       ->delimiter(',')
       ->group("Picture");
   app->add_option("--light", command->light,
-                  "AZIMUTH,ALTITUDE of the light in degrees")
+                  "AZIMUTH,ALTITUDE of the light in degrees (default: 315,45; "
+                  "perspective: 270,45)")
       ->delimiter(',')
       ->expected(2)
-      ->capture_default_str()
+      ->type_name("AZ,ALT")
       ->group("Picture");
   app->add_option("--turn", command->turn_deg,
                   "Perspective: degrees clockwise from south")

@@ -27,16 +27,14 @@ const std::map<std::string, v1::Sampling> kSamplings = {
 }  // namespace
 
 void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
-  CLI::Option* server = command
-                            ->add_option("--server", options->server,
-                                         "Server to ask, as host:port")
-                            ->envname("TERRANE_SERVER")
-                            ->capture_default_str()
-                            ->group("Connection");
+  command
+      ->add_option("--server", options->server, "Server to ask, as host:port")
+      ->envname("TERRANE_SERVER")
+      ->capture_default_str()
+      ->group("Connection");
   command
       ->add_flag("--local", options->local,
-                 "Generate in this process, without a server")
-      ->excludes(server)
+                 "Generate in this process instead of asking a server")
       ->group("Connection");
   command
       ->add_option("--threads", options->threads,
@@ -71,12 +69,14 @@ void AddRecipeOptions(CLI::App* command, TerrainOptions* options) {
   command
       ->add_option("--source", options->source,
                    "Fractal: midpoint, successive or subdivision")
-      ->transform(CLI::CheckedTransformer(kSources))
+      ->transform(OneOf(kSources))
+      ->type_name("NAME")
       ->group("Terrain");
   command
       ->add_option("--mapping", options->mapping,
                    "Fractal to height: boltzmann or linear")
-      ->transform(CLI::CheckedTransformer(kMappings))
+      ->transform(OneOf(kMappings))
+      ->type_name("NAME")
       ->group("Terrain");
   command
       ->add_option("--roughness", options->roughness,
@@ -133,7 +133,8 @@ void AddExtentOptions(CLI::App* command, ExtentOptions* options) {
   command
       ->add_option("--sampling", options->sampling,
                    "point: on the lattice; area: at the cells' centres")
-      ->transform(CLI::CheckedTransformer(kSamplings))
+      ->transform(OneOf(kSamplings))
+      ->type_name("NAME")
       ->default_str("point")
       ->group("Samples");
 }

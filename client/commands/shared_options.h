@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,12 @@
 #include "client/chosen_terrain.h"
 
 namespace terrane::client {
+
+// The names that an option takes. Its help text lists them itself.
+template <typename Value>
+CLI::Validator OneOf(const std::map<std::string, Value>& names) {
+  return CLI::CheckedTransformer(names, CLI::ignore_case).description("");
+}
 
 // Who answers.
 struct ConnectionOptions {

@@ -275,7 +275,8 @@ void AddOutputOptions(CLI::App* app, TerrainCommand* command) {
       ->group("Output");
   app->add_option("--compress", command->compression,
                   "Of .tif: deflate, zstd or none")
-      ->transform(CLI::CheckedTransformer(kCompressions))
+      ->transform(OneOf(kCompressions))
+      ->type_name("NAME")
       ->default_str("deflate")
       ->group("Output");
   app->add_flag("--json", command->json,
@@ -283,7 +284,8 @@ void AddOutputOptions(CLI::App* app, TerrainCommand* command) {
       ->group("Output");
   app->add_option("--progress", command->progress,
                   "auto (a bar on a terminal), none or json, on standard error")
-      ->transform(CLI::CheckedTransformer(kProgressModes))
+      ->transform(OneOf(kProgressModes))
+      ->type_name("NAME")
       ->default_str("auto")
       ->group("Output");
   CLI::Option* dry_run = app->add_flag("--dry-run", command->dry_run,

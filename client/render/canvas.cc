@@ -46,7 +46,7 @@ Picture Resized(const Picture& picture, int width, int height) {
   OIIO::ImageBuf target(
       OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::UINT8),
       result.values.data());
-  OIIO::ImageBufAlgo::resize(target, source);
+  OIIO::ImageBufAlgo::resize(target, source, "triangle");
   return result;
 }
 

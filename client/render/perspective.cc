@@ -12,7 +12,7 @@ namespace {
 
 constexpr Rgb kPaper{1, 1, 1};
 constexpr Rgb kWall{0.62, 0.57, 0.52};
-constexpr Rgb kNoLandWall{0.36, 0.53, 0.70};
+constexpr Rgb kWaterWall{0.36, 0.53, 0.70};
 
 // Every pixel is the mean of this many by this many.
 constexpr int kSupersampling = 3;
@@ -21,26 +21,32 @@ constexpr std::int64_t kMaxPosts = 1400;
 constexpr double kMarginShare = 0.03;
 // The block's floor lies this share of the relief below the lowest height.
 constexpr double kFloorShare = 0.25;
-constexpr double kReliefShare = 1.0 / 6;
+constexpr double kReliefShare = 1.0 / 9;
+
+constexpr double kDry = -1;
 
 // A corner of a triangle: where on the canvas, how far away, what colour.
 struct Corner {
   double x = 0;
   double y = 0;
-  double depth = 0;
+  double distance = 0;
   Rgb colour;
+  // How deep the ground lies under water; drawn as water where above 0.
+  double depth = kDry;
 };
 
-// The canvas with a depth for every pixel; the nearer one stays.
+// The canvas with a distance for every pixel; the nearer one stays.
 class DepthCanvas {
  public:
-  DepthCanvas(int width, int height)
+  // `range` is that of the land, which the water's colours depend on.
+  DepthCanvas(int width, int height, const TintRange& range)
       : width_(width),
         height_(height),
+        range_(range),
         colours_(
             static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
             kPaper),
-        depths_(colours_.size(), std::numeric_limits<double>::infinity()) {}
+        distances_(colours_.size(), std::numeric_limits<double>::infinity()) {}
 
   void FillTriangle(const Corner& a, const Corner& b, const Corner& c) {
     const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
@@ -57,13 +63,18 @@ class DepthCanvas {
             ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / area;
         const double wa = 1 - wb - wc;
         if (wa < 0 || wb < 0 || wc < 0) continue;
-        const double depth = wa * a.depth + wb * b.depth + wc * c.depth;
+        const double distance =
+            wa * a.distance + wb * b.distance + wc * c.distance;
         const std::size_t at =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
             static_cast<std::size_t>(x);
-        if (depth >= depths_[at]) continue;
-        depths_[at] = depth;
-        colours_[at] = Mixed(a.colour, wa, b.colour, wb, c.colour, wc);
+        if (distance >= distances_[at]) continue;
+        distances_[at] = distance;
+        // The shore lies where the depth is 0, inside a triangle.
+        const double depth = wa * a.depth + wb * b.depth + wc * c.depth;
+        colours_[at] = depth > 0
+                           ? WaterTint(depth, range_)
+                           : Mixed(a.colour, wa, b.colour, wb, c.colour, wc);
       }
     }
   }
@@ -112,8 +123,9 @@ class DepthCanvas {
 
   int width_;
   int height_;
+  TintRange range_;
   std::vector<Rgb> colours_;
-  std::vector<double> depths_;
+  std::vector<double> distances_;
 };
 
 // The posts that are drawn, with their colours.
@@ -122,9 +134,10 @@ struct Block {
   std::int64_t rows = 0;
   double step_x = 1;  // ground distance of drawn posts
   double step_y = 1;
-  std::vector<double> heights;  // with the water as its surface
+  std::vector<double> ground;   // heights of the land, also under water
+  std::vector<double> surface;  // the same, but water where it is higher
   std::vector<Rgb> colours;
-  std::vector<bool> water;
+  TintRange range;  // of the land above the water
   double minimum = 0;
   double maximum = 0;
   double exaggeration = 1;
@@ -164,12 +177,10 @@ Block MakeBlock(const core::HeightView& heights, const core::GroundScale& scale,
   block.step_x = spacing.x * static_cast<double>(step);
   block.step_y = spacing.y * static_cast<double>(step);
   const core::HeightView view{block.columns, block.rows, values};
-  const TintRange range = TintRangeOf(view, options.water_level);
+  block.range = TintRangeOf(view, options.water_level);
   const TintRange whole = TintRangeOf(view, std::nullopt);
-  block.minimum = options.water_level.has_value()
-                      ? std::max(whole.minimum, *options.water_level)
-                      : whole.minimum;
-  block.maximum = std::max(whole.maximum, block.minimum);
+  block.minimum = whole.minimum;
+  block.maximum = std::max(whole.maximum, block.range.maximum);
 
   std::vector<float> shade(values.size());
   block.exaggeration = options.exaggeration.value_or(
@@ -181,13 +192,14 @@ Block MakeBlock(const core::HeightView& heights, const core::GroundScale& scale,
       options.light, block.exaggeration, shade);
   for (std::size_t at = 0; at < values.size(); ++at) {
     const double height = values[at];
-    const bool water =
-        options.water_level.has_value() && height < *options.water_level;
-    block.water.push_back(water);
-    block.heights.push_back(water ? *options.water_level : height);
+    block.ground.push_back(height);
+    block.surface.push_back(options.water_level.has_value()
+                                ? std::isnan(height)
+                                      ? height
+                                      : std::max(height, *options.water_level)
+                                : height);
     block.colours.push_back(
-        water ? WaterTint(*options.water_level - height, range)
-              : Lit(LandTint(height, range), shade[at], options.light.up));
+        Lit(LandTint(height, block.range), shade[at], options.light.up));
   }
   return block;
 }
@@ -214,11 +226,11 @@ class View {
                  const Rgb& colour) const {
     const Corner raw = Rotated(i, j, height);
     return {(raw.x - left_) * pixels_ + margin_,
-            (raw.y - top_) * pixels_ + margin_, raw.depth, colour};
+            (raw.y - top_) * pixels_ + margin_, raw.distance, colour};
   }
 
  private:
-  // y grows downwards, depth away from the viewer.
+  // y grows downwards, distance away from the viewer.
   Corner Rotated(std::int64_t i, std::int64_t j, double height) const {
     const double east = block_.step_x * static_cast<double>(i);
     const double south = block_.step_y * static_cast<double>(j);
@@ -248,7 +260,7 @@ class View {
     }
     for (std::int64_t j = 0; j < block_.rows; ++j) {
       for (std::int64_t i = 0; i < block_.columns; ++i) {
-        const double height = block_.heights[block_.At(i, j)];
+        const double height = block_.surface[block_.At(i, j)];
         if (!std::isnan(height)) include(Rotated(i, j, height));
       }
     }
@@ -269,10 +281,15 @@ class View {
   int canvas_height_ = 0;
 };
 
-void DrawTop(const Block& block, const View& view, DepthCanvas* canvas) {
+void DrawTop(const Block& block, const View& view,
+             std::optional<double> water_level, DepthCanvas* canvas) {
   const auto corner = [&](std::int64_t i, std::int64_t j) {
     const std::size_t at = block.At(i, j);
-    return view.Project(i, j, block.heights[at], block.colours[at]);
+    Corner result = view.Project(i, j, block.surface[at], block.colours[at]);
+    if (water_level.has_value()) {
+      result.depth = *water_level - block.ground[at];
+    }
+    return result;
   };
   for (std::int64_t j = 0; j + 1 < block.rows; ++j) {
     for (std::int64_t i = 0; i + 1 < block.columns; ++i) {
@@ -295,16 +312,21 @@ void DrawTop(const Block& block, const View& view, DepthCanvas* canvas) {
 void DrawWall(const Block& block, const View& view, std::int64_t i0,
               std::int64_t j0, std::int64_t i1, std::int64_t j1, double lit,
               DepthCanvas* canvas) {
-  const double h0 = block.heights[block.At(i0, j0)];
-  const double h1 = block.heights[block.At(i1, j1)];
-  if (std::isnan(h0) || std::isnan(h1)) return;
-  const bool water = block.water[block.At(i0, j0)];
-  const Rgb colour = Mix({0, 0, 0}, water ? kNoLandWall : kWall, lit);
-  const Rgb foot = Mix({0, 0, 0}, colour, 0.8);
-  canvas->FillQuad(view.Project(i0, j0, h0, colour),
-                   view.Project(i1, j1, h1, colour),
-                   view.Project(i0, j0, view.floor(), foot),
-                   view.Project(i1, j1, view.floor(), foot));
+  const std::size_t at0 = block.At(i0, j0);
+  const std::size_t at1 = block.At(i1, j1);
+  if (std::isnan(block.ground[at0]) || std::isnan(block.ground[at1])) return;
+  const auto draw = [&](const std::vector<double>& top, double foot0,
+                        double foot1, const Rgb& colour, const Rgb& foot) {
+    canvas->FillQuad(view.Project(i0, j0, top[at0], colour),
+                     view.Project(i1, j1, top[at1], colour),
+                     view.Project(i0, j0, foot0, foot),
+                     view.Project(i1, j1, foot1, foot));
+  };
+  constexpr Rgb kDark{0, 0, 0};
+  const Rgb earth = Mix(kDark, kWall, lit);
+  const Rgb water = Mix(kDark, kWaterWall, lit);
+  draw(block.ground, view.floor(), view.floor(), earth, Mix(kDark, earth, 0.8));
+  draw(block.surface, block.ground[at0], block.ground[at1], water, water);
 }
 
 void DrawWalls(const Block& block, const View& view, DepthCanvas* canvas) {
@@ -327,8 +349,9 @@ PerspectivePicture RenderPerspective(const core::HeightView& heights,
                                      const PerspectiveOptions& options) {
   const Block block = MakeBlock(heights, scale, options);
   const View view(block, options);
-  DepthCanvas canvas(options.width * kSupersampling, view.canvas_height());
-  DrawTop(block, view, &canvas);
+  DepthCanvas canvas(options.width * kSupersampling, view.canvas_height(),
+                     block.range);
+  DrawTop(block, view, options.water_level, &canvas);
   DrawWalls(block, view, &canvas);
   return {canvas.Shrunk(), block.exaggeration};
 }

@@ -20,10 +20,11 @@ struct PerspectiveOptions {
   // horizon.
   double turn_deg = 28;
   double tilt_deg = 33;
-  // Multiplies the heights; default: so that the relief is a sixth of the
+  // Multiplies the heights; default: so that the relief is a ninth of the
   // longer side.
   std::optional<double> exaggeration;
-  core::Light light;
+  // From the viewer's left, so that what faces the viewer is not in the dark.
+  core::Light light = {-0.70710678118654752, 0, 0.70710678118654752};
   std::optional<double> water_level;
 };
 

@@ -18,7 +18,7 @@ constexpr Rgb kWater{0.80, 0.89, 0.96};
 constexpr int kTickTextSize = 15;
 constexpr int kLabelSize = 16;
 constexpr int kTitleSize = 19;
-constexpr int kTop = 48;
+constexpr int kTop = 64;
 constexpr int kBottom = 62;
 constexpr int kRight = 26;
 
