@@ -43,6 +43,7 @@ trap stop_server EXIT
 # Starts the server on a free port and sets `address` to where it listens.
 start_server() {
   local log=out/quickstart-server.log waited
+  : >"${log}"  # an earlier run's log would name that run's port
   "${server}" --listen 127.0.0.1:0 >"${log}" 2>&1 &
   server_pid=$!
   for ((waited = 0; waited < 200; ++waited)); do
@@ -55,6 +56,9 @@ start_server() {
   cat "${log}" >&2
   exit 1
 }
+
+# A proxy that the environment names has no business with this machine's own ports.
+export no_grpc_proxy="127.0.0.1${no_grpc_proxy:+,${no_grpc_proxy}}"
 
 step "Packages"
 deploy/install-packages.sh
