@@ -121,7 +121,8 @@ void CallLog::Event(std::string_view event, std::string_view detail) {
 
 std::shared_ptr<spdlog::logger> MakeStderrLogger(const std::string& level) {
   auto logger =
-      spdlog::stderr_logger_mt<spdlog::async_factory_nonblock>("terrane");
+      spdlog::async_factory_nonblock::create<spdlog::sinks::stderr_sink_mt>(
+          "terrane");
   logger->set_level(spdlog::level::from_str(level));
   return logger;
 }

@@ -1,0 +1,278 @@
+// Streams over loopback with tiles that cost nothing: order, back-pressure,
+// cancellation, refusal and drain.
+#include "server/service/tile_stream.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <future>
+#include <thread>
+
+#include "server/service/status.h"
+#include "tests/server/fake_actor.h"
+#include "tests/server/served.h"
+
+namespace terrane::server {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+using TileReader = grpc::ClientReader<v1::StreamTilesResponse>;
+
+v1::StreamTilesRequest Tiles(int count, std::int64_t first = 0) {
+  v1::StreamTilesRequest request;
+  request.set_tile_size(count);
+  request.set_first_tile(first);
+  return request;
+}
+
+// Reads a whole stream, which must be in order; the number of tiles.
+std::int64_t ReadAll(TileReader* reader, std::int64_t first,
+                     std::size_t tile_bytes) {
+  v1::StreamTilesResponse response;
+  EXPECT_TRUE(reader->Read(&response));
+  EXPECT_EQ(response.header().recipe_hash(), "sha256:fake");
+  std::int64_t next = first;
+  while (reader->Read(&response)) {
+    EXPECT_EQ(response.tile().index(), next);
+    EXPECT_EQ(response.tile().data(), FakeTileData(next, tile_bytes));
+    ++next;
+  }
+  return next - first;
+}
+
+TEST(TileStreamTest, TilesComeInOrderAndWhole) {
+  FakeActor actor;
+  Served served(&actor);
+  for (const std::size_t bytes : {0UL, 1UL, 100UL, 300'000UL}) {
+    actor.tiles().tile_bytes = bytes;
+    grpc::ClientContext context;
+    const auto reader = served.terrain->StreamTiles(&context, Tiles(50));
+    EXPECT_EQ(ReadAll(reader.get(), 0, bytes), 50);
+    EXPECT_TRUE(reader->Finish().ok());
+  }
+}
+
+TEST(TileStreamTest, ResumesAtTheFirstTileAskedFor) {
+  FakeActor actor;
+  Served served(&actor);
+  for (const std::int64_t first : {1, 49, 50}) {
+    grpc::ClientContext context;
+    const auto reader = served.terrain->StreamTiles(&context, Tiles(50, first));
+    EXPECT_EQ(ReadAll(reader.get(), first, 1024), 50 - first);
+    EXPECT_TRUE(reader->Finish().ok());
+  }
+}
+
+TEST(TileStreamTest, ManyStreamsAtOnceAllEnd) {
+  FakeActor actor;
+  ServerOptions options;
+  options.workers = 2;
+  Served served(&actor, options);
+  std::vector<std::future<std::int64_t>> streams;
+  for (int i = 0; i < 32; ++i) {
+    streams.push_back(std::async(std::launch::async, [&served] {
+      grpc::ClientContext context;
+      const auto reader = served.terrain->StreamTiles(&context, Tiles(40));
+      const std::int64_t count = ReadAll(reader.get(), 0, 1024);
+      EXPECT_TRUE(reader->Finish().ok());
+      return count;
+    }));
+  }
+  for (auto& stream : streams) EXPECT_EQ(stream.get(), 40);
+}
+
+// gRPC and the kernel take in some megabytes that nobody reads; after that the
+// stream holds still, at one tile being written and one ahead.
+TEST(TileStreamTest, SlowReaderHoldsTheStream) {
+  FakeActor actor;
+  actor.tiles().tile_bytes = 8 << 20;
+  Served served(&actor);
+  grpc::ClientContext context;
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(100));
+  std::int64_t started = -1;
+  ASSERT_TRUE(Eventually([&] {
+    const std::int64_t before = started;
+    started = actor.tiles().started;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return started == before && started > 0;
+  }));
+  EXPECT_LE(started, 4);
+  EXPECT_EQ(ReadAll(reader.get(), 0, 8 << 20), 100);
+  EXPECT_TRUE(reader->Finish().ok());
+}
+
+TEST(TileStreamTest, CancelStopsTheGeneration) {
+  FakeActor actor;
+  Served served(&actor);
+  actor.tiles().hold = true;
+  grpc::ClientContext context;
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(100));
+  v1::StreamTilesResponse header;
+  EXPECT_TRUE(reader->Read(&header));
+  ASSERT_TRUE(Eventually([&] { return actor.tiles().started == 1; }));
+  context.TryCancel();
+  EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_TRUE(Eventually([&] { return actor.tiles().stopped == 1; }));
+  EXPECT_THAT(served.StopAndReadLog(), HasSubstr("\"code\":\"CANCELLED\""));
+  EXPECT_EQ(actor.tiles().started, 1);
+}
+
+TEST(TileStreamTest, CancelOfAnUnreadStreamEndsIt) {
+  FakeActor actor;
+  actor.tiles().tile_bytes = 8 << 20;
+  Served served(&actor);
+  grpc::ClientContext context;
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(1000));
+  ASSERT_TRUE(Eventually([&] { return actor.tiles().started >= 2; }));
+  context.TryCancel();
+  reader->Finish();
+  EXPECT_THAT(served.StopAndReadLog(), HasSubstr("\"code\":\"CANCELLED\""));
+  EXPECT_LT(actor.tiles().started, 10);
+}
+
+TEST(TileStreamTest, DeadlineStopsTheGeneration) {
+  FakeActor actor;
+  Served served(&actor);
+  actor.tiles().hold = true;
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() +
+                       std::chrono::milliseconds(200));
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(1));
+  EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
+  EXPECT_TRUE(Eventually([&] { return actor.tiles().stopped == 1; }));
+  EXPECT_THAT(served.StopAndReadLog(),
+              HasSubstr("\"code\":\"DEADLINE_EXCEEDED\""));
+}
+
+TEST(TileStreamTest, CancelStormLeavesAServerThatServes) {
+  FakeActor actor;
+  ServerOptions options;
+  options.workers = 2;
+  Served served(&actor, options);
+  for (int i = 0; i < 200; ++i) {
+    grpc::ClientContext context;
+    const auto reader = served.terrain->StreamTiles(&context, Tiles(1000));
+    v1::StreamTilesResponse response;
+    for (int k = 0; k < i % 5; ++k) reader->Read(&response);
+    context.TryCancel();
+    reader->Finish();
+  }
+  grpc::ClientContext context;
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(20));
+  EXPECT_EQ(ReadAll(reader.get(), 0, 1024), 20);
+  EXPECT_TRUE(reader->Finish().ok());
+}
+
+TEST(TileStreamTest, BeyondTheLineStreamsAreRefusedWithADelay) {
+  FakeActor actor;
+  actor.tiles().hold = true;
+  ServerOptions options;
+  options.limits.max_concurrent_streams = 1;
+  Served served(&actor, options);
+  // One runs and four wait.
+  grpc::ClientContext contexts[5];
+  std::vector<std::unique_ptr<TileReader>> readers;
+  for (grpc::ClientContext& context : contexts) {
+    readers.push_back(served.terrain->StreamTiles(&context, Tiles(1)));
+  }
+  grpc::Status refused;
+  ASSERT_TRUE(Eventually([&] {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() +
+                         std::chrono::milliseconds(50));
+    refused = served.terrain->StreamTiles(&context, Tiles(1))->Finish();
+    return refused.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+  }));
+  v1::ErrorStatus details;
+  ASSERT_TRUE(details.ParseFromString(refused.error_details()));
+  EXPECT_EQ(details.details(0).type_url(),
+            "type.googleapis.com/google.rpc.RetryInfo");
+  actor.tiles().hold = false;
+  for (auto& reader : readers) {
+    EXPECT_EQ(ReadAll(reader.get(), 0, 1024), 1);
+    EXPECT_TRUE(reader->Finish().ok());
+  }
+}
+
+TEST(TileStreamTest, DrainLetsARunningStreamEnd) {
+  FakeActor actor;
+  actor.tiles().hold = true;
+  Served served(&actor);
+  grpc::ClientContext context;
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(30));
+  ASSERT_TRUE(Eventually([&] { return actor.tiles().started == 1; }));
+  std::thread drain([&] {
+    served.server().Drain(std::chrono::milliseconds(10),
+                          std::chrono::seconds(10));
+  });
+  actor.tiles().hold = false;
+  EXPECT_EQ(ReadAll(reader.get(), 0, 1024), 30);
+  EXPECT_TRUE(reader->Finish().ok());
+  drain.join();
+  grpc::ClientContext late;
+  EXPECT_EQ(served.terrain->StreamTiles(&late, Tiles(1))->Finish().error_code(),
+            grpc::StatusCode::UNAVAILABLE);
+}
+
+TEST(TileStreamTest, DrainCancelsWhatOutlivesIt) {
+  FakeActor actor;
+  actor.tiles().hold = true;
+  Served served(&actor);
+  grpc::ClientContext context;
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(30));
+  ASSERT_TRUE(Eventually([&] { return actor.tiles().started == 1; }));
+  served.server().Drain(std::chrono::milliseconds(0),
+                        std::chrono::milliseconds(100));
+  EXPECT_EQ(ReadAll(reader.get(), 0, 1024), 0);
+  EXPECT_FALSE(reader->Finish().ok());
+  EXPECT_EQ(actor.tiles().stopped, 1);
+}
+
+TEST(UnaryCallTest, CancelStopsTheWork) {
+  FakeActor actor;
+  actor.tiles().hold = true;
+  Served served(&actor);
+  grpc::ClientContext context;
+  std::thread cancel([&] {
+    EXPECT_TRUE(Eventually([&] { return actor.tiles().started == 1; }));
+    context.TryCancel();
+  });
+  v1::GetProfileResponse response;
+  EXPECT_EQ(served.terrain->GetProfile(&context, {}, &response).error_code(),
+            grpc::StatusCode::CANCELLED);
+  cancel.join();
+  EXPECT_TRUE(Eventually([&] { return actor.tiles().stopped == 1; }));
+}
+
+TEST(UnaryCallTest, ServerFaultHasAnIdThatTheLogHasToo) {
+  FakeActor actor;
+  Served served(&actor);
+  grpc::ClientContext context;
+  context.AddMetadata("x-request-id", "test-17");
+  v1::GetPresetResponse response;
+  const grpc::Status status =
+      served.terrain->GetPreset(&context, {}, &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INTERNAL);
+  EXPECT_EQ(status.error_message(), "internal error, request id test-17");
+  EXPECT_EQ(context.GetServerInitialMetadata().find("x-request-id")->second,
+            "test-17");
+  const std::string log = served.StopAndReadLog();
+  EXPECT_THAT(log, HasSubstr("\"request_id\":\"test-17\""));
+  EXPECT_THAT(log, HasSubstr("\"error\":\"cannot read /etc/secret\""));
+}
+
+TEST(UnaryCallTest, BadRequestIdsAreReplaced) {
+  FakeActor actor;
+  Served served(&actor);
+  grpc::ClientContext context;
+  context.AddMetadata("x-request-id", "a\"b c");
+  v1::GetHeightsResponse response;
+  EXPECT_TRUE(served.terrain->GetHeights(&context, {}, &response).ok());
+  const auto id = context.GetServerInitialMetadata().find("x-request-id");
+  EXPECT_EQ(id->second.size(), 16U);
+}
+
+}  // namespace
+}  // namespace terrane::server
