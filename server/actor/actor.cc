@@ -26,6 +26,7 @@ constexpr std::size_t kMaxTerrains = 64;
 // A request's terrain as read: a valid spec only when no violation was added.
 struct ReadChoice {
   v1::TerrainRecipe recipe;  // of the preset, with the seed asked for
+  std::string recipe_prefix;
   ReadRecipe read;
 };
 
@@ -72,6 +73,9 @@ class TerrainActor : public Actor {
   absl::StatusOr<ReadChoice> Read(const v1::TerrainChoice& choice,
                                   const std::string& prefix,
                                   core::Violations* violations);
+  // The terrain of a valid choice, from the cache or made now.
+  absl::StatusOr<std::shared_ptr<const PreparedTerrain>> Prepare(
+      const ReadChoice& choice);
   absl::StatusOr<PlannedTiles> Plan(const v1::StreamTilesRequest& request,
                                     const std::string& prefix);
 
@@ -92,7 +96,7 @@ absl::StatusOr<ReadChoice> TerrainActor::Read(const v1::TerrainChoice& choice,
                                               const std::string& prefix,
                                               core::Violations* violations) {
   ReadChoice result;
-  std::string recipe_prefix = prefix + "terrain.recipe.";
+  result.recipe_prefix = prefix + "terrain.recipe.";
   switch (choice.choice_case()) {
     case v1::TerrainChoice::kRecipe:
       result.recipe = choice.recipe();
@@ -101,7 +105,7 @@ absl::StatusOr<ReadChoice> TerrainActor::Read(const v1::TerrainChoice& choice,
       const auto preset = FindPreset(choice.preset());
       if (!preset.ok()) return preset.status();
       result.recipe = (*preset)->recipe();
-      recipe_prefix = prefix + "terrain.preset.";
+      result.recipe_prefix = prefix + "terrain.preset.";
       break;
     }
     case v1::TerrainChoice::CHOICE_NOT_SET:
@@ -111,11 +115,25 @@ absl::StatusOr<ReadChoice> TerrainActor::Read(const v1::TerrainChoice& choice,
   }
   if (choice.has_seed()) result.recipe.set_seed(choice.seed());
   result.read = ReadTerrainRecipe(result.recipe, &rasters_, limits_.recipe,
-                                  recipe_prefix, violations);
+                                  result.recipe_prefix, violations);
   if (!result.read.missing_raster.empty() && violations->empty()) {
     return RasterNotFound(result.read.missing_raster);
   }
   return result;
+}
+
+absl::StatusOr<std::shared_ptr<const PreparedTerrain>> TerrainActor::Prepare(
+    const ReadChoice& choice) {
+  auto prepared = terrains_.Prepare(choice.recipe, choice.read);
+  const std::vector<core::Violation> found =
+      core::ViolationsOf(prepared.status());
+  if (found.empty()) return prepared;
+  // The core speaks of the recipe, the answer of the request.
+  core::Violations violations;
+  for (const core::Violation& one : found) {
+    violations.Add(choice.recipe_prefix + one.field, one.description);
+  }
+  return violations.ToStatus();
 }
 
 absl::StatusOr<TerrainActor::PlannedTiles> TerrainActor::Plan(
@@ -127,7 +145,7 @@ absl::StatusOr<TerrainActor::PlannedTiles> TerrainActor::Plan(
   planned.plan = PlanTiles(request, ValidSpec(*choice, violations), limits_,
                            prefix, &violations);
   if (!violations.empty()) return violations.ToStatus();
-  auto prepared = terrains_.Prepare(choice->recipe, choice->read);
+  auto prepared = Prepare(*choice);
   if (!prepared.ok()) return prepared.status();
   planned.prepared = *std::move(prepared);
   return planned;
@@ -178,7 +196,7 @@ absl::StatusOr<v1::GetProfileResponse> TerrainActor::GetProfile(
   const core::TileRequest plan = PlanProfile(
       request, ValidSpec(*choice, violations), limits_, "", &violations);
   if (!violations.empty()) return violations.ToStatus();
-  const auto prepared = terrains_.Prepare(choice->recipe, choice->read);
+  const auto prepared = Prepare(*choice);
   if (!prepared.ok()) return prepared.status();
   const core::Terrain& terrain = *(*prepared)->terrain;
 
@@ -216,7 +234,7 @@ absl::StatusOr<v1::GetHeightsResponse> TerrainActor::GetHeights(
   const std::vector<core::Point2> points = PlanHeights(
       request, ValidSpec(*choice, violations), limits_, "", &violations);
   if (!violations.empty()) return violations.ToStatus();
-  const auto prepared = terrains_.Prepare(choice->recipe, choice->read);
+  const auto prepared = Prepare(*choice);
   if (!prepared.ok()) return prepared.status();
 
   v1::GetHeightsResponse response;

@@ -19,11 +19,9 @@ namespace terrane::server {
 namespace {
 
 using ::testing::Each;
-using ::testing::Eq;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
 using ::testing::Not;
-using ::testing::SizeIs;
 using ::testing::Truly;
 
 // No preset names a raster: it would have to be uploaded first.
@@ -221,8 +219,8 @@ TEST(PaperFiguresTest, Figure4cMeetsTheMacroShapeAtItsEightMarks) {
   const Figure c("fbm/fig04c");
   EXPECT_EQ(b.heights(), c.heights());
   EXPECT_GT(c.MeanDeviation(Everywhere()), 0.1);
-  ASSERT_THAT(c.preset().view().marks(), SizeIs(8));
-  ASSERT_THAT(c.preset().recipe().discrete_constraints(), SizeIs(8));
+  ASSERT_EQ(c.preset().view().marks_size(), 8);
+  ASSERT_EQ(c.preset().recipe().discrete_constraints_size(), 8);
   for (const double x : c.preset().view().marks()) {
     EXPECT_EQ(c.heights()[c.At(x)], c.macro()[c.At(x)]) << "x = " << x;
   }
@@ -280,7 +278,7 @@ TEST(PaperFiguresTest, Figure6MeetsTheMacroShapeAtSevenPoints) {
   const v1::TerrainRecipe& recipe = b.preset().recipe();
   EXPECT_EQ(recipe.fidelity(), 0.2);
   EXPECT_EQ(recipe.roughness(), 0.8);
-  ASSERT_THAT(recipe.discrete_constraints(), SizeIs(7));
+  ASSERT_EQ(recipe.discrete_constraints_size(), 7);
   for (const v1::DiscreteConstraint& point : recipe.discrete_constraints()) {
     const std::size_t at = b.At(point.x(), point.y());
     EXPECT_EQ(b.heights()[at], b.macro()[at]) << point.ShortDebugString();
@@ -317,7 +315,7 @@ TEST(PaperFiguresTest, Figure7dCorrodesTheTopThat7cKeeps) {
   const Place top = WithinCircle(4);
   EXPECT_LT(c.Increment(top), 0.5 * d.Increment(top));
   // Pits below the top as it was made: in d alone.
-  EXPECT_THAT(c.ShareBelow(top), Eq(0));
+  EXPECT_EQ(c.ShareBelow(top), 0);
   EXPECT_GT(d.ShareBelow(top), 0.02);
 }
 
