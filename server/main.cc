@@ -3,6 +3,8 @@
 // Standard output holds one line, "listening on ADDRESS:PORT"; logs go to
 // standard error. SIGTERM and SIGINT drain and exit 0; a second one ends at
 // once. Exit codes: 0 ok, 1 error, 2 usage.
+#include <arpa/inet.h>
+#include <netinet/in.h>
 #include <pthread.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
@@ -34,7 +36,7 @@ struct Flags {
   std::int64_t raster_store_mib = 1024;
   int drain_seconds = 30;
   std::string log_level = "info";
-  LogFormat log_format = LogFormat::kText;
+  std::string log_format = "text";
 };
 
 // "127.0.0.1:0" -> "127.0.0.1"; "[::1]:0" -> "[::1]".
@@ -42,9 +44,15 @@ std::string HostOf(const std::string& address) {
   return address.substr(0, address.rfind(':'));
 }
 
+// Only what cannot be another machine's: a name other than localhost might
+// resolve to anything.
 bool IsLoopback(const std::string& address) {
   const std::string host = HostOf(address);
-  return host == "localhost" || host == "[::1]" || host.starts_with("127.");
+  in_addr numeric{};
+  if (inet_pton(AF_INET, host.c_str(), &numeric) == 1) {
+    return (ntohl(numeric.s_addr) >> 24) == IN_LOOPBACKNET;
+  }
+  return host == "localhost" || host == "[::1]";
 }
 
 std::string Footer() {
@@ -112,11 +120,8 @@ void AddFlags(CLI::App* app, Flags* flags) {
           {"trace", "debug", "info", "warning", "error", "critical", "off"}))
       ->capture_default_str();
   app->add_option("--log-format", flags->log_format, "text or json")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, LogFormat>{{"text", LogFormat::kText},
-                                           {"json", LogFormat::kJson}},
-          CLI::ignore_case))
-      ->default_str("text");
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
   app->add_flag("--reflection", flags->server.reflection,
                 "Answer gRPC server reflection (grpcurl, buf curl)");
   app->set_version_flag("--version", "terrane-server " TERRANE_VERSION);
@@ -145,7 +150,8 @@ void EndAtNextSignal(const sigset_t& signals) {
 
 int Serve(const Flags& flags) {
   const sigset_t signals = BlockEndSignals();
-  CallLog log(MakeStderrLogger(flags.log_level), flags.log_format);
+  CallLog log(MakeStderrLogger(flags.log_level),
+              flags.log_format == "json" ? LogFormat::kJson : LogFormat::kText);
   const std::unique_ptr<Actor> actor =
       MakeActor(flags.server.limits, flags.server.workers);
   auto server = Server::Start(flags.server, actor.get(), &log);

@@ -45,17 +45,17 @@ class ActorTest : public ::testing::Test {
     std::memcpy(heights.data(), tile.data().data(), tile.data().size());
     return heights;
   }
-  // Uploads a wavy 9 x 8 model with posts 30 apart; its id.
+  // Uploads a rough 16 x 13 model with posts 30 apart; its id.
   std::string UploadModel() {
     const auto upload = actor_->BeginUpload();
     EXPECT_TRUE(upload
                     ->Add(FromJson<v1::UploadRasterRequest>(
-                        R"({"header": {"width": "9", "height": "8", "frame":
+                        R"({"header": {"width": "16", "height": "13", "frame":
                             {"originX": 500, "originY": 900, "spacingX": 30,
                              "spacingY": -30, "crs": "EPSG:32617"}}})"))
                     .ok());
     v1::UploadRasterRequest chunk;
-    for (int i = 0; i < 72; ++i) {
+    for (int i = 0; i < 16 * 13; ++i) {
       const float height = static_cast<float>((i * 37) % 23);
       chunk.mutable_chunk()->append(reinterpret_cast<const char*>(&height),
                                     sizeof height);
@@ -185,8 +185,8 @@ TEST_F(ActorTest, ResolvedRecipeGivesTheSameBytes) {
   EXPECT_EQ(job->header().frame().crs(), "EPSG:32617");
   EXPECT_TRUE(job->header().recipe().has_roughness());
   EXPECT_TRUE(job->header().recipe().has_fidelity());
-  EXPECT_EQ(job->header().window().width(), 33);
-  EXPECT_EQ(job->header().window().height(), 29);
+  EXPECT_EQ(job->header().window().width(), 61);
+  EXPECT_EQ(job->header().window().height(), 49);
   v1::StreamTilesRequest again;
   *again.mutable_terrain()->mutable_recipe() = job->header().recipe();
   again.set_level(2);
@@ -197,10 +197,10 @@ TEST_F(ActorTest, ResolvedRecipeGivesTheSameBytes) {
   EXPECT_EQ(Make(**resolved, 0).data(), Make(*job, 0).data());
   // Refining keeps every post.
   const std::vector<float> heights = Heights(Make(*job, 0));
-  for (int j = 0; j < 8; ++j) {
-    for (int i = 0; i < 9; ++i) {
-      EXPECT_EQ(heights[static_cast<std::size_t>(4 * j * 33 + 4 * i)],
-                static_cast<float>(((j * 9 + i) * 37) % 23));
+  for (int j = 0; j < 13; ++j) {
+    for (int i = 0; i < 16; ++i) {
+      EXPECT_EQ(heights[static_cast<std::size_t>(4 * j * 61 + 4 * i)],
+                static_cast<float>(((j * 16 + i) * 37) % 23));
     }
   }
 }
