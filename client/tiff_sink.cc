@@ -28,6 +28,10 @@ CPLStringList CreationOptions(int tile_size, Compression compression) {
     options.SetNameValue(
         "COMPRESS", compression == Compression::kZstd ? "ZSTD" : "DEFLATE");
     options.SetNameValue("PREDICTOR", "3");
+    // The last bits of fractal heights hardly compress: the quickest level
+    // costs 2 % in size and takes half the time.
+    options.SetNameValue("ZLEVEL", "1");
+    options.SetNameValue("ZSTD_LEVEL", "1");
   }
   return options;
 }

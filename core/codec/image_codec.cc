@@ -25,6 +25,8 @@ absl::StatusOr<EncodedImage> Encode(const Image<Value>& image,
   OIIO::ImageSpec spec(image.width, image.height, image.channels, type);
   spec.attribute("compression", compression);
   if (image.channels == 1) spec.channelnames = {"Y"};
+  // Without it an EXR file holds the time of its making.
+  spec.attribute("DateTime", "");
 
   EncodedImage bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);

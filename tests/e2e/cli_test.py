@@ -1,0 +1,277 @@
+#!/usr/bin/python3
+"""The real programs together: terrane against a terrane-server on port 0.
+
+Usage: cli_test.py TERRANE TERRANE_SERVER TEST_DATA [unittest arguments]
+"""
+
+import filecmp
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy
+from osgeo import gdal
+
+gdal.UseExceptions()
+TERRANE, SERVER, DATA = sys.argv[1:4]
+DEM = os.path.join(DATA, "jacksboro-3arcsec-4326.tif")
+
+
+def start_server():
+    """A server on a free port: the process and its address."""
+    process = subprocess.Popen([SERVER, "--listen", "127.0.0.1:0", "--log-level", "error"], stdout=subprocess.PIPE, text=True)
+    line = process.stdout.readline()
+    assert line.startswith("listening on "), line
+    return process, line.split()[-1]
+
+
+class CliTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server, cls.address = start_server()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.send_signal(signal.SIGTERM)
+        assert cls.server.wait(30) == 0
+        cls.server.stdout.close()
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def run_terrane(self, *arguments, expected=0, **options):
+        done = subprocess.run([TERRANE, *map(str, arguments)], capture_output=True, text=True, timeout=120, **options)
+        self.assertEqual(done.returncode, expected, done.stderr)
+        return done
+
+    def ask(self, *arguments, **options):
+        return self.run_terrane(*arguments, "--server", self.address, **options)
+
+    def names(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+    def test_server_and_local_write_the_same_bytes(self):
+        choices = [
+            ["--preset", "fbm/fig06b"],
+            ["--dem", DEM, "--level", "2", "--window", "100,200,500,333"],
+            ["--seed", "7", "--level", "20", "--window", "-300,1000000,300,200", "--sampling", "area"],
+        ]
+        for number, choice in enumerate(choices):
+            for extension in ["tif", "png", "exr", "r16", "f32"]:
+                remote, local = self.folder / f"r{number}.{extension}", self.folder / f"l{number}.{extension}"
+                self.ask("terrain", *choice, "--out", remote)
+                self.run_terrane("terrain", *choice, "--local", "--threads", "3", "--out", local)
+                self.assertTrue(filecmp.cmp(remote, local, shallow=False), (choice, extension))
+
+    def test_refined_model_keeps_its_posts_and_place(self):
+        out = self.folder / "fine.tif"
+        summary = json.loads(self.ask("terrain", "--dem", DEM, "--level", "3", "--out", out, "--json").stdout)
+        self.assertEqual(summary["files"], [str(out)])
+        self.assertEqual(summary["samples"], 3217 * 2745)
+        coarse, fine = gdal.Open(DEM), gdal.Open(str(out))
+        numpy.testing.assert_array_equal(fine.ReadAsArray()[::8, ::8], coarse.ReadAsArray())
+        self.assertTrue(fine.GetSpatialRef().IsSame(coarse.GetSpatialRef()))
+        self.assertEqual(fine.GetMetadataItem("AREA_OR_POINT"), "Point")
+        first = coarse.GetGeoTransform()
+        post = (first[0] + first[1] / 2, first[3] + first[5] / 2)
+        placed = fine.GetGeoTransform()
+        self.assertAlmostEqual(placed[0] + placed[1] / 2, post[0], places=12)
+        self.assertAlmostEqual(placed[3] + placed[5] / 2, post[1], places=12)
+        self.assertAlmostEqual(placed[1] * 8, first[1], places=15)
+
+    def test_tiles_are_cuts_of_the_whole_with_one_range(self):
+        choice = ["--dem", DEM, "--level", "1"]
+        self.ask("terrain", *choice, "--out", self.folder / "whole.f32")
+        whole = numpy.fromfile(self.folder / "whole.f32", "<f4").reshape(687, 805)
+        self.ask("terrain", *choice, "--tiles", "all", "--tile-size", "257", "--out", self.folder / "f" / "t.f32")
+        self.ask("terrain", *choice, "--tiles", "0,0,3,2", "--tile-size", "257", "--out", self.folder / "r" / "{y}-{x}.r16")
+        self.assertEqual(len(list((self.folder / "f").glob("*.f32"))), 6)
+        ranges = set()
+        for y in range(2):
+            for x in range(3):
+                cut = whole[y * 256 : y * 256 + 257, x * 256 : x * 256 + 257]
+                exact = numpy.fromfile(self.folder / "f" / f"t_x{x}_y{y}.f32", "<f4").reshape(257, 257)
+                numpy.testing.assert_array_equal(exact, cut)
+                name = self.folder / "r" / f"{y}-{x}.r16"
+                sidecar = json.loads(name.with_name(name.name + ".json").read_text())
+                ranges.add((sidecar["minimum"], sidecar["maximum"]))
+                step = (sidecar["maximum"] - sidecar["minimum"]) / 65535
+                heights = sidecar["minimum"] + numpy.fromfile(name, "<u2").reshape(257, 257) * step
+                self.assertLess(abs(heights - cut).max(), 0.52 * step)
+        self.assertEqual(len(ranges), 1)
+
+    def test_interrupt_removes_the_half_written_file(self):
+        out = self.folder / "huge.tif"
+        process = subprocess.Popen(
+            [TERRANE, "terrain", "--server", self.address, "--level", "3", "--window", "0,0,60000,60000", "--out", str(out)],
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        deadline = time.monotonic() + 60
+        while not any(path.stat().st_size > 100_000 for path in self.folder.iterdir()):
+            self.assertLess(time.monotonic(), deadline)
+            self.assertIsNone(process.poll())
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130, errors)
+        self.assertEqual(self.names(), [])
+
+    def test_killed_server_ends_in_order(self):
+        server, address = start_server()
+        process = subprocess.Popen(
+            [TERRANE, "terrain", "--server", address, "--window", "0,0,60000,60000", "--out", str(self.folder / "a.f32")],
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        deadline = time.monotonic() + 60
+        while not any(path.stat().st_size > 100_000 for path in self.folder.iterdir()):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        server.kill()
+        server.wait()
+        server.stdout.close()
+        _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 4, errors)
+        self.assertIn("does not answer", errors)
+        self.assertEqual(self.names(), [])
+
+    def test_full_disk_leaves_nothing_and_spares_what_was_there(self):
+        out = self.folder / "a.tif"
+        out.write_text("old")
+
+        def small_files():
+            import resource
+
+            resource.setrlimit(resource.RLIMIT_FSIZE, (30_000, 30_000))
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+
+        done = self.ask("terrain", "--preset", "demo/hills", "--out", out, expected=1, preexec_fn=small_files)
+        self.assertIn(str(out), done.stderr)
+        self.assertEqual(self.names(), ["a.tif"])
+        self.assertEqual(out.read_text(), "old")
+
+    def test_some_tiles_written_is_partial(self):
+        (self.folder / "t_x1_y0.f32").mkdir()
+        self.ask("terrain", "--tiles", "0,0,3,1", "--out", self.folder / "t.f32", expected=3)
+        self.assertIn("t_x0_y0.f32", self.names())
+        self.assertNotIn("t_x2_y0.f32", self.names())
+
+    def test_usage_errors(self):
+        out = self.folder / "a.tif"
+        for arguments in [
+            [],
+            ["terrian"],
+            ["terrain"],
+            ["terrain", "--out", self.folder / "a.jpg"],
+            ["terrain", "--out", out, "--source", "perlin"],
+            ["terrain", "--out", out, "--window", "0,0,5"],
+            ["terrain", "--out", out, "--preset", "a", "--dem", DEM],
+            ["terrain", "--out", out, "--band", "1"],
+            ["terrain", "--out", out, "--level", "-1"],
+            ["terrain", "--out", out, "--range", "5,5"],
+            ["terrain", "--out", out, "--tile-size", "255"],
+            ["terrain", "--out", out, "--tiles", "1,2"],
+            ["render", DEM, "--out", self.folder / "a.jpg"],
+            ["render", self.folder / "missing.tif", "--out", self.folder / "a.png"],
+        ]:
+            if arguments[:1] == ["terrain"]:
+                arguments = [*arguments, "--server", self.address]
+            self.run_terrane(*arguments, expected=2)
+        self.assertEqual(self.names(), [])
+
+    def test_wrong_values_are_named_with_their_range(self):
+        done = self.ask(
+            "terrain", "--roughness", "1.7", "--fidelity", "-1", "--window", "0,0,8,8", "--out", self.folder / "a.f32", expected=1
+        )
+        lines = done.stderr.splitlines()
+        self.assertEqual(len(lines), 2, lines)
+        self.assertRegex(lines[0], r"roughness: must be in \(0, 1\), got 1.7")
+        self.assertRegex(lines[1], r"fidelity: must be .*, got -1")
+        self.ask("terrain", "--preset", "no/such", "--out", self.folder / "a.f32", expected=1)
+        self.ask("terrain", "--dem", __file__, "--out", self.folder / "a.f32", expected=1)
+        self.assertEqual(self.names(), [])
+
+    def test_nobody_there_is_exit_code_4(self):
+        for command in [["info"], ["presets"], ["terrain", "--window", "0,0,8,8", "--out", self.folder / "a.f32"]]:
+            done = self.run_terrane(*command, "--server", "127.0.0.1:1", expected=4)
+            self.assertIn("127.0.0.1:1", done.stderr)
+        self.assertEqual(self.names(), [])
+
+    def test_server_from_the_environment_and_local_before_it(self):
+        environment = {**os.environ, "TERRANE_SERVER": self.address}
+        info = json.loads(self.run_terrane("info", "--json", env=environment).stdout)
+        self.assertGreater(info["limits"]["max_level"], 0)
+        environment["TERRANE_SERVER"] = "127.0.0.1:1"
+        self.run_terrane("info", "--local", env=environment)
+
+    def test_preset_as_a_recipe_gives_the_same_terrain(self):
+        recipe = self.folder / "r.json"
+        recipe.write_text(self.ask("presets", "fbm/fig06b", "--json").stdout)
+        hashes = set()
+        for number, choice in enumerate([["--preset", "fbm/fig06b"], ["--recipe", recipe]]):
+            arguments = [*choice, "--level", "4", "--out", self.folder / f"{number}.f32", "--json"]
+            hashes.add(json.loads(self.ask("terrain", *arguments).stdout)["recipe_hash"])
+        self.assertEqual(len(hashes), 1)
+        self.assertTrue(filecmp.cmp(self.folder / "0.f32", self.folder / "1.f32", shallow=False))
+
+    def test_profile_is_csv_of_the_whole_domain(self):
+        lines = self.ask("profile", "--preset", "fbm/fig04a", "--level", "3").stdout.splitlines()
+        self.assertEqual(lines[0], "x,height,macro")
+        rows = [tuple(map(float, line.split(","))) for line in lines[1:]]
+        self.assertEqual((len(rows) - 1) % 8, 0)
+        # Figure 4a is the macro shape itself.
+        self.assertTrue(all(height == macro for _, height, macro in rows))
+
+    def test_heights_at_posts_are_the_posts(self):
+        model = gdal.Open(DEM)
+        place = model.GetGeoTransform()
+        posts = [(0, 0), (17, 5), (402, 343)]
+        points = "".join(f"{place[0] + (i + 0.5) * place[1]!r},{place[3] + (j + 0.5) * place[5]!r}\n" for i, j in posts)
+        lines = self.ask("heights", "--dem", DEM, "--level", "0", input=points).stdout.splitlines()
+        self.assertEqual(lines[0], "x,y,z")
+        values = model.ReadAsArray()
+        for line, (i, j) in zip(lines[1:], posts):
+            self.assertAlmostEqual(float(line.split(",")[2]), values[j, i], delta=1e-3)
+
+    def test_dry_run_writes_nothing(self):
+        estimate = json.loads(self.ask("terrain", "--dem", DEM, "--level", "5", "--dry-run", "--json").stdout)
+        self.assertEqual(int(estimate["samples"]), (402 * 32 + 1) * (343 * 32 + 1))
+        self.assertEqual(self.names(), [])
+
+    def test_progress_as_json_on_standard_error(self):
+        done = self.ask("terrain", "--preset", "demo/hills", "--out", self.folder / "a.f32", "--progress", "json")
+        last = json.loads(done.stderr.splitlines()[-1])
+        self.assertEqual(last["samples"], last["total"])
+
+    def test_pictures_of_every_kind(self):
+        self.ask("terrain", "--preset", "demo/hills", "--out", self.folder / "a.r16")
+        self.ask("profile", "--preset", "fbm/fig04c", "--out", self.folder / "a.csv")
+        pictures = {
+            "relief": [DEM],
+            "raw": [self.folder / "a.r16", "--style", "hillshade"],
+            "grey": [DEM, "--style", "grey"],
+            "block": [DEM, "--style", "perspective", "--water-level", "290", "--width", "400"],
+            "plot": [self.folder / "a.csv", "--marks", "1,2"],
+            "both": ["--side-by-side", DEM, DEM, "--width", "300"],
+            "line-preset": ["--preset", "fbm/fig04c", "--server", self.address],
+            "field-preset": ["--preset", "fbm/fig06c", "--server", self.address],
+        }
+        for name, arguments in pictures.items():
+            out = self.folder / f"{name}.png"
+            self.run_terrane("render", *arguments, "--out", out)
+            pixels = gdal.Open(str(out)).ReadAsArray()
+            self.assertEqual(pixels.shape[0], 3)
+            self.assertGreater(pixels.std(), 10, name)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:])
