@@ -14,6 +14,7 @@ constexpr Rgb kDetailFrame{0.85, 0.20, 0.15};
 constexpr int kGap = 16;
 constexpr int kCaptionHeight = 40;
 constexpr int kCaptionSize = 20;
+constexpr int kSmallestCaptionSize = 8;
 
 // A hillshade whose pixels are still the samples, and the ground it covers.
 struct Shaded {
@@ -74,6 +75,17 @@ void DrawFrame(double x, double y, double width, double height,
   canvas->DrawLine(d, a, 2.5, kDetailFrame);
 }
 
+// The size at which both captions fit above their panels, if one does.
+int CaptionSize(const Panel& left, const Panel& right, int panel_width) {
+  int size = kCaptionSize;
+  while (size > kSmallestCaptionSize &&
+         std::max(Canvas::TextWidth(left.caption, size),
+                  Canvas::TextWidth(right.caption, size)) > panel_width) {
+    --size;
+  }
+  return size;
+}
+
 int Pixels(double metres, double metres_per_pixel) {
   return std::max(static_cast<int>(std::lround(metres / metres_per_pixel)), 1);
 }
@@ -88,6 +100,7 @@ Picture RenderSideBySide(const Panel& left, const Panel& right,
       std::max(shaded[0].width_m, shaded[1].width_m) / options.panel_width;
   const int panel_height = Pixels(
       std::max(shaded[0].height_m, shaded[1].height_m), metres_per_pixel);
+  const int caption_size = CaptionSize(left, right, options.panel_width);
   Canvas canvas(2 * options.panel_width + 3 * kGap,
                 2 * (panel_height + kGap) + kCaptionHeight, kPaper);
   for (int side = 0; side < 2; ++side) {
@@ -99,7 +112,7 @@ Picture RenderSideBySide(const Panel& left, const Panel& right,
     const double share =
         std::min(options.detail_share * shaded[0].width_m / one.width_m, 1.0);
     canvas.DrawText({static_cast<double>(x), kCaptionHeight / 2.0},
-                    panels[side]->caption, kCaptionSize, TextAlign::kLeft,
+                    panels[side]->caption, caption_size, TextAlign::kLeft,
                     kInk);
     canvas.Paste(Part(one.picture, 1, width, height), x, kCaptionHeight);
     DrawFrame(x + width * (1 - share) / 2,
