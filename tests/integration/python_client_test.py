@@ -1,0 +1,163 @@
+"""An independent client (Debian's python3-grpcio) against the real server.
+
+Usage: python_client_test.py TERRANE_SERVER STUBS [unittest arguments]
+"""
+
+import signal
+import subprocess
+import sys
+import unittest
+
+import grpc
+import numpy
+from google.protobuf import any_pb2, descriptor_pb2, descriptor_pool, message_factory
+
+SERVER, STUBS = sys.argv[1:3]
+sys.path.insert(0, STUBS)
+
+from terrane.v1 import common_pb2, info_pb2, info_pb2_grpc, raster_pb2, raster_pb2_grpc  # noqa: E402
+from terrane.v1 import terrain_pb2, terrain_pb2_grpc, terrain_recipe_pb2  # noqa: E402
+
+FIELD = descriptor_pb2.FieldDescriptorProto
+
+
+def google_rpc():
+    """google.rpc's messages as published, which no Debian package holds: name -> class."""
+    file = descriptor_pb2.FileDescriptorProto(
+        name="google_rpc.proto", package="google.rpc", syntax="proto3", dependency=["google/protobuf/any.proto"])
+
+    def add(message, name, number, kind, repeated=False, type_name=None):
+        label = FIELD.LABEL_REPEATED if repeated else FIELD.LABEL_OPTIONAL
+        message.field.add(name=name, number=number, type=kind, label=label, type_name=type_name)
+
+    status = file.message_type.add(name="Status")
+    add(status, "code", 1, FIELD.TYPE_INT32)
+    add(status, "message", 2, FIELD.TYPE_STRING)
+    add(status, "details", 3, FIELD.TYPE_MESSAGE, True, ".google.protobuf.Any")
+    bad_request = file.message_type.add(name="BadRequest")
+    violation = bad_request.nested_type.add(name="FieldViolation")
+    add(violation, "field", 1, FIELD.TYPE_STRING)
+    add(violation, "description", 2, FIELD.TYPE_STRING)
+    add(bad_request, "field_violations", 1, FIELD.TYPE_MESSAGE, True, ".google.rpc.BadRequest.FieldViolation")
+    error_info = file.message_type.add(name="ErrorInfo")
+    add(error_info, "reason", 1, FIELD.TYPE_STRING)
+    add(error_info, "domain", 2, FIELD.TYPE_STRING)
+    pool = descriptor_pool.DescriptorPool()
+    pool.AddSerializedFile(any_pb2.DESCRIPTOR.serialized_pb)
+    pool.Add(file)
+    factory = message_factory.MessageFactory(pool)
+    return {
+        name: factory.GetPrototype(pool.FindMessageTypeByName(f"google.rpc.{name}"))
+        for name in ["Status", "BadRequest", "ErrorInfo"]
+    }
+
+
+RPC = google_rpc()
+
+
+def details(error, name):
+    """The details of that type of an RpcError, read as google.rpc messages."""
+    trailers = dict(error.trailing_metadata())
+    status = RPC["Status"].FromString(trailers["grpc-status-details-bin"])
+    assert status.code == error.code().value[0] and status.message == error.details()
+    wanted = f"type.googleapis.com/google.rpc.{name}"
+    return [RPC[name].FromString(d.value) for d in status.details if d.type_url == wanted]
+
+
+def resident_bytes(process):
+    """The resident set of a process."""
+    with open(f"/proc/{process.pid}/status", encoding="ascii") as status:
+        line = next(line for line in status if line.startswith("VmRSS:"))
+    return int(line.split()[1]) * 1024
+
+
+class PythonClientTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = subprocess.Popen([SERVER, "--listen", "127.0.0.1:0", "--log-level", "error"],
+                                      stdout=subprocess.PIPE, text=True)
+        address = cls.server.stdout.readline().split()[-1]
+        cls.channel = grpc.insecure_channel(address)
+        cls.terrain = terrain_pb2_grpc.TerrainServiceStub(cls.channel)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.channel.close()
+        cls.server.send_signal(signal.SIGTERM)
+        assert cls.server.wait(30) == 0
+        cls.server.stdout.close()
+
+    def request(self, **fields):
+        recipe = terrain_recipe_pb2.TerrainRecipe(seed=5)
+        return terrain_pb2.StreamTilesRequest(terrain=terrain_pb2.TerrainChoice(recipe=recipe), **fields)
+
+    def test_tiles_share_their_edges(self):
+        request = self.request(level=9, tile_size=65, tiles=common_pb2.TileRange(x=-1, y=3, columns=2, rows=1))
+        header, left, right = self.terrain.StreamTiles(request, timeout=60)
+        self.assertEqual(header.header.window, common_pb2.Window(x=-64, y=192, width=129, height=65))
+        heights = [numpy.frombuffer(m.tile.data, "<f4").reshape(65, 65) for m in (left, right)]
+        numpy.testing.assert_array_equal(heights[0][:, -1], heights[1][:, 0])
+        self.assertEqual(heights[0].min(), left.tile.minimum)
+        self.assertEqual(heights[0].max(), left.tile.maximum)
+
+    def test_violations_are_a_google_rpc_bad_request(self):
+        request = self.request(level=99, window=common_pb2.Window(width=-1, height=5))
+        request.terrain.recipe.roughness = float("nan")
+        request.terrain.recipe.fidelity = -1
+        with self.assertRaises(grpc.RpcError) as raised:
+            list(self.terrain.StreamTiles(request, timeout=60))
+        self.assertEqual(raised.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
+        (bad_request,) = details(raised.exception, "BadRequest")
+        violations = {v.field: v.description for v in bad_request.field_violations}
+        self.assertIn("got -1", violations["terrain.recipe.fidelity"])
+        self.assertIn("(0, 1)", violations["terrain.recipe.roughness"])
+        self.assertIn("level", violations)
+        self.assertIn("window.width", violations)
+
+    def test_unknown_preset_is_a_google_rpc_error_info(self):
+        request = terrain_pb2.GetPresetRequest(name="fbm/nothing")
+        with self.assertRaises(grpc.RpcError) as raised:
+            self.terrain.GetPreset(request, timeout=60)
+        self.assertEqual(raised.exception.code(), grpc.StatusCode.NOT_FOUND)
+        (info,) = details(raised.exception, "ErrorInfo")
+        self.assertEqual((info.reason, info.domain), ("PRESET_NOT_FOUND", "terrane"))
+
+    def test_uploaded_raster_is_refined(self):
+        posts = (numpy.arange(20 * 24, dtype="<f4").reshape(20, 24) % 17) * 3
+        header = raster_pb2.RasterHeader(width=24, height=20)
+        parts = [raster_pb2.UploadRasterRequest(header=header)]
+        data = posts.tobytes()
+        parts += [raster_pb2.UploadRasterRequest(chunk=data[i:i + 333]) for i in range(0, len(data), 333)]
+        uploaded = raster_pb2_grpc.RasterServiceStub(self.channel).UploadRaster(iter(parts), timeout=60)
+        recipe = terrain_recipe_pb2.TerrainRecipe(refinement=terrain_recipe_pb2.Refinement())
+        recipe.macro.parts.add().raster.raster_id = uploaded.raster_id
+        request = terrain_pb2.StreamTilesRequest(terrain=terrain_pb2.TerrainChoice(recipe=recipe), level=2)
+        header, tile = self.terrain.StreamTiles(request, timeout=60)
+        self.assertEqual(header.header.window, common_pb2.Window(width=93, height=77))
+        heights = numpy.frombuffer(tile.tile.data, "<f4").reshape(77, 93)
+        numpy.testing.assert_array_equal(heights[::4, ::4], posts)
+
+    def test_memory_stays_flat_over_a_huge_stream(self):
+        # 65,536 x 65,536 samples are 16 GiB; after the first few hundred tiles the
+        # server must not grow any more.
+        request = self.request(level=16, window=common_pb2.Window(width=65536, height=65536))
+        stream = self.terrain.StreamTiles(request, timeout=240)
+        settled = None
+        for count, message in enumerate(stream):
+            self.assertEqual(message.tile.total if count else 65536, 65536)
+            if count == 400:
+                settled = resident_bytes(self.server)
+            if count == 2000:
+                break
+        grown = resident_bytes(self.server) - settled
+        stream.cancel()
+        self.assertLess(grown, 8 << 20)
+
+    def test_server_says_what_it_allows(self):
+        info = info_pb2_grpc.InfoServiceStub(self.channel).GetServerInfo(info_pb2.GetServerInfoRequest(), timeout=60)
+        self.assertGreaterEqual(info.limits.max_level, 30)
+        self.assertIn("fbm/fig06b", [preset.name for preset in info.presets])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
