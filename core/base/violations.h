@@ -26,8 +26,8 @@ struct Violation {
   bool operator==(const Violation&) const = default;
 };
 
-// Ordered list of violations; keeps the first kKept and counts the rest, so that
-// a hostile request cannot make a large answer.
+// Ordered list of violations; keeps the first kKept and counts the rest, so
+// that a hostile request cannot make a large answer.
 class Violations {
  public:
   static constexpr std::size_t kKept = 64;
@@ -52,8 +52,8 @@ class Violations {
 // An INVALID_ARGUMENT status with one violation.
 absl::Status ViolationError(std::string field, std::string description);
 
-// The violations that a status from ToStatus or ViolationError carries; empty for
-// any other status.
+// The violations that a status from ToStatus or ViolationError carries; empty
+// for any other status.
 std::vector<Violation> ViolationsOf(const absl::Status& status);
 
 }  // namespace terrane::core

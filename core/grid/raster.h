@@ -1,8 +1,9 @@
 // A raster of heights placed in the world: an elevation model, in memory.
 //
 // Values are row-major, width * height of them; post (i, j) lies at
-// frame.origin + (i, j) * frame.spacing. Posts without data are NaN. A Raster is
-// immutable once made and shared between threads by shared_ptr<const Raster>.
+// frame.origin + (i, j) * frame.spacing. Posts without data are NaN. A Raster
+// is immutable once made and shared between threads by shared_ptr<const
+// Raster>.
 #ifndef TERRANE_CORE_GRID_RASTER_H_
 #define TERRANE_CORE_GRID_RASTER_H_
 

@@ -18,9 +18,9 @@
 namespace terrane::core {
 
 struct Calibration {
-  // H as measured, before it is cut; reported, not used. Above 1 for models that
-  // were smoothed; 1 where nothing is left to measure (a plane); NaN when the
-  // model is too small to measure and `roughness` was given.
+  // H as measured, before it is cut; reported, not used. Above 1 for models
+  // that were smoothed; 1 where nothing is left to measure (a plane); NaN when
+  // the model is too small to measure and `roughness` was given.
   double measured_roughness = 0;
   // H to generate with: the measured one cut to [0.5, 0.95], or the one given.
   double roughness = 0;
