@@ -80,7 +80,7 @@ to the bit. Where the model has only blocks, the refinement has slopes, and no t
 posts shows through. Plains stay plain and mountains gain texture, because the amplitude of
 the detail follows the model's own local roughness."
 
-mountains=(--window 1360,1130,600,600)
+mountains=(--window "1360,1130,600,600")
 run "${refine[@]}" --level 3 "${mountains[@]}" --fidelity 0 --out "$work/interpolated.tif"
 run "${refine[@]}" --level 3 "${mountains[@]}" --out "$work/fractal.tif"
 run render --side-by-side "$work/interpolated.tif" "$work/fractal.tif" --width 480 --out "$pictures/jacksboro-detail.png"
@@ -104,7 +104,7 @@ preset demo/islands "The hills give the islands their places, the fractal gives 
 preset demo/canyon "The plateau is calm and the walls are rough, and the rivers lie where their polylines say."
 
 say "## Sources and mappings" "" "The same hills three times, under the same grey light." ""
-shade=(render --local --preset demo/hills --style hillshade --window 0,0,480,480 --exaggeration 2)
+shade=(render --local --preset demo/hills --style hillshade --window "0,0,480,480" --exaggeration 2)
 run "${shade[@]}" --out "$pictures/source-subdivision.png"
 picture source-subdivision "SUBDIVISION and LINEAR" "SUBDIVISION and LINEAR, the defaults. *What to see.* Even ground, the same in every direction."
 run "${shade[@]}" --source midpoint --out "$pictures/source-midpoint.png"
