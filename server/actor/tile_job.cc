@@ -1,6 +1,7 @@
 #include "server/actor/tile_job.h"
 
-#include <xxhash.h>
+// The same XXH3, in the vector instructions that this CPU has.
+#include <xxh_x86dispatch.h>
 
 #include <chrono>
 #include <span>

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "server/service/server.h"
+#include "tests/server/fake_actor.h"
 #include "tests/server/recipe_text.h"
 
 namespace terrane::server {
@@ -121,28 +122,35 @@ TEST_F(ServedTest, RasterIsUploadedInChunks) {
   EXPECT_EQ(kept.header().width(), 300);
 }
 
-TEST_F(ServedTest, TruncatedAndCancelledUploadsLeaveNothing) {
-  const auto header = FromJson<v1::UploadRasterRequest>(
-      R"({"header": {"width": "300", "height": "200"}})");
-  v1::UploadRasterResponse response;
-  {
+// A raster as large as the store: it fits only when what came before it has
+// been given up.
+TEST(ServedUploadTest, TruncatedAndCancelledUploadsLeaveNothing) {
+  Limits limits;
+  limits.raster_store_bytes = 240'000;
+  const auto actor = MakeActor(limits, 1);
+  Served served(actor.get());
+  const auto upload = [&](int bytes, bool cancel) {
     grpc::ClientContext context;
-    const auto writer = served_.raster->UploadRaster(&context, &response);
-    writer->Write(header);
-    writer->WritesDone();
-    const grpc::Status status = writer->Finish();
-    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-    EXPECT_THAT(status.error_message(),
-                HasSubstr("chunk: must hold 240000 bytes in all, got 0"));
-  }
-  {
-    grpc::ClientContext context;
-    const auto writer = served_.raster->UploadRaster(&context, &response);
-    writer->Write(header);
-    context.TryCancel();
-    EXPECT_EQ(writer->Finish().error_code(), grpc::StatusCode::CANCELLED);
-  }
-  EXPECT_THAT(served_.StopAndReadLog(), HasSubstr("\"code\":\"CANCELLED\""));
+    v1::UploadRasterResponse response;
+    const auto writer = served.raster->UploadRaster(&context, &response);
+    writer->Write(FromJson<v1::UploadRasterRequest>(
+        R"({"header": {"width": "300", "height": "200"}})"));
+    v1::UploadRasterRequest chunk;
+    chunk.set_chunk(std::string(static_cast<std::size_t>(bytes), '\0'));
+    writer->Write(chunk);
+    if (cancel) {
+      context.TryCancel();
+    } else {
+      writer->WritesDone();
+    }
+    return writer->Finish();
+  };
+  const grpc::Status truncated = upload(1000, false);
+  EXPECT_EQ(truncated.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(truncated.error_message(),
+            "chunk: must hold 240000 bytes in all, got 1000");
+  EXPECT_EQ(upload(1000, true).error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_TRUE(Eventually([&] { return upload(240'000, false).ok(); }));
 }
 
 TEST_F(ServedTest, LargeMessagesAreRefused) {

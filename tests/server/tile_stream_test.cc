@@ -171,29 +171,36 @@ TEST(TileStreamTest, BeyondTheLineStreamsAreRefusedWithADelay) {
   ServerOptions options;
   options.limits.max_concurrent_streams = 1;
   Served served(&actor, options);
-  // One runs and four wait.
-  grpc::ClientContext contexts[5];
-  std::vector<std::unique_ptr<TileReader>> readers;
-  for (grpc::ClientContext& context : contexts) {
-    readers.push_back(served.terrain->StreamTiles(&context, Tiles(1)));
+  // Of twelve, one runs and four wait.
+  std::atomic<int> refused = 0;
+  std::vector<std::future<grpc::Status>> streams;
+  for (int i = 0; i < 12; ++i) {
+    streams.push_back(std::async(std::launch::async, [&] {
+      grpc::ClientContext context;
+      const auto reader = served.terrain->StreamTiles(&context, Tiles(1));
+      for (v1::StreamTilesResponse message; reader->Read(&message);) {
+      }
+      const grpc::Status status = reader->Finish();
+      if (!status.ok()) ++refused;
+      return status;
+    }));
   }
-  grpc::Status refused;
-  ASSERT_TRUE(Eventually([&] {
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() +
-                         std::chrono::milliseconds(50));
-    refused = served.terrain->StreamTiles(&context, Tiles(1))->Finish();
-    return refused.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
-  }));
-  v1::ErrorStatus details;
-  ASSERT_TRUE(details.ParseFromString(refused.error_details()));
-  EXPECT_EQ(details.details(0).type_url(),
-            "type.googleapis.com/google.rpc.RetryInfo");
+  EXPECT_TRUE(Eventually([&] { return refused == 7; }));
   actor.tiles().hold = false;
-  for (auto& reader : readers) {
-    EXPECT_EQ(ReadAll(reader.get(), 0, 1024), 1);
-    EXPECT_TRUE(reader->Finish().ok());
+  int served_streams = 0;
+  for (auto& stream : streams) {
+    const grpc::Status status = stream.get();
+    if (status.ok()) {
+      ++served_streams;
+      continue;
+    }
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+    v1::ErrorStatus details;
+    ASSERT_TRUE(details.ParseFromString(status.error_details()));
+    EXPECT_EQ(details.details(0).type_url(),
+              "type.googleapis.com/google.rpc.RetryInfo");
   }
+  EXPECT_EQ(served_streams, 5);
 }
 
 TEST(TileStreamTest, DrainLetsARunningStreamEnd) {
