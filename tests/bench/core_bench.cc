@@ -33,8 +33,7 @@ void ReportSamples(benchmark::State& state, std::int64_t samples) {
 // --- Yardsticks
 // --------------------------------------------------------------------
 
-void Memset(benchmark::State& state) {
-  const std::int64_t side = state.range(0);
+void Memset(benchmark::State& state, std::int64_t side) {
   std::vector<float> out(static_cast<std::size_t>(side * side));
   for (auto _ : state) {
     std::memset(out.data(), 0, out.size() * sizeof(float));
@@ -44,8 +43,7 @@ void Memset(benchmark::State& state) {
   ReportSamples(state, side * side);
 }
 
-void HashBound(benchmark::State& state) {
-  const std::int64_t side = state.range(0);
+void HashBound(benchmark::State& state, std::int64_t side) {
   std::vector<float> out(static_cast<std::size_t>(side * side));
   std::vector<std::uint32_t> words;
   for (std::int64_t i = 0; i < side; ++i) words.push_back(ColumnWord(i));
@@ -97,8 +95,7 @@ TerrainSpec SpecOf(FractalSource source, HeightMapping mapping) {
   return spec;
 }
 
-// Positions of `count` constraints: scattered evenly over the eight tiles'
-// neighbourhood, `area` sides of a tile across.
+// `count` places scattered evenly about the origin, over `tiles` tiles a side.
 std::vector<Point2> Scatter(int count, double tile_side, double tiles) {
   std::vector<Point2> points;
   for (int k = 0; k < count; ++k) {
@@ -236,10 +233,10 @@ void RegisterRefinement() {
 void RegisterAll() {
   for (const std::int64_t side : kSides) {
     const std::string suffix = "/side:" + std::to_string(side);
-    benchmark::RegisterBenchmark(("bound/memset" + suffix).c_str(), Memset)
-        ->Arg(side);
-    benchmark::RegisterBenchmark(("bound/hash" + suffix).c_str(), HashBound)
-        ->Arg(side);
+    benchmark::RegisterBenchmark(("bound/memset" + suffix).c_str(), Memset,
+                                 side);
+    benchmark::RegisterBenchmark(("bound/hash" + suffix).c_str(), HashBound,
+                                 side);
   }
   RegisterChains();
   RegisterConstraints();
