@@ -178,8 +178,8 @@ class ConstraintField::Impl {
   double minimum() const { return minimum_; }
   double maximum() const { return maximum_; }
 
-  bool Evaluate(const SampleGrid& grid, float* out,
-                std::ptrdiff_t stride) const {
+  bool Evaluate(const SampleGrid& grid, float* out, std::ptrdiff_t stride,
+                const std::stop_token& stop) const {
     const SampleRect all = AllSamples(grid);
     if (sources_.empty() || all.empty()) return false;
     const std::size_t band_rows =
@@ -196,7 +196,7 @@ class ConstraintField::Impl {
       SampleRect rect = all;
       rect.row_begin = row;
       rect.row_end = std::min(row + band_rows, all.rows());
-      if (SumBand(grid, rect, &band)) {
+      if (SumBand(grid, rect, stop, &band)) {
         // Nothing is written before it is known that something reaches.
         if (!reached) fill(0, row);
         reached = true;
@@ -211,15 +211,15 @@ class ConstraintField::Impl {
  private:
   // Sums the sources over the samples of `rect`; false when none reaches them.
   bool SumBand(const SampleGrid& grid, const SampleRect& rect,
-               Band* band) const {
+               const std::stop_token& stop, Band* band) const {
     const std::size_t samples = rect.columns() * rect.rows();
     if (!index_.Query(BoxOf(grid, rect), kSourcesPerSample * samples,
                       &band->ids)) {
       band->Reset(rect);
-      AddBySample(grid, band);
+      AddBySample(grid, stop, band);
     } else if (!band->ids.empty()) {
       band->Reset(rect);
-      AddBySource(grid, band);
+      AddBySource(grid, stop, band);
     } else {
       return false;
     }
@@ -227,8 +227,10 @@ class ConstraintField::Impl {
   }
 
   // Every source adds itself to the samples in its reach.
-  void AddBySource(const SampleGrid& grid, Band* band) const {
+  void AddBySource(const SampleGrid& grid, const std::stop_token& stop,
+                   Band* band) const {
     for (const std::uint32_t id : band->ids) {
+      if (stop.stop_requested()) return;
       const Source& source = sources_[id];
       const SampleRect part =
           Intersection(SamplesIn(grid, source.ReachBox()), band->rect);
@@ -237,9 +239,11 @@ class ConstraintField::Impl {
   }
 
   // Every sample looks for the sources whose reach may hold it.
-  void AddBySample(const SampleGrid& grid, Band* band) const {
+  void AddBySample(const SampleGrid& grid, const std::stop_token& stop,
+                   Band* band) const {
     const SampleRect& rect = band->rect;
     for (std::size_t j = rect.row_begin; j < rect.row_end; ++j) {
+      if (stop.stop_requested()) return;
       for (std::size_t i = rect.column_begin; i < rect.column_end; ++i) {
         const SampleRect here{i, i + 1, j, j + 1};
         index_.Query(BoxOf(grid, here), kAny, &band->ids);
@@ -299,8 +303,9 @@ float ConstraintField::maximum() const {
 }
 
 bool ConstraintField::Evaluate(const SampleGrid& grid, float* out,
-                               std::ptrdiff_t stride) const {
-  return impl_->Evaluate(grid, out, stride);
+                               std::ptrdiff_t stride,
+                               const std::stop_token& stop) const {
+  return impl_->Evaluate(grid, out, stride, stop);
 }
 
 }  // namespace terrane::core

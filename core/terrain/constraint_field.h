@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <stop_token>
 
 #include "core/grid/lattice_window.h"
 #include "core/terrain/terrain_spec.h"
@@ -42,8 +43,10 @@ class ConstraintField {
   // Writes F at every sample, out[j * stride + i], and returns true; or returns
   // false and writes nothing when no source reaches any of the samples (F is
   // the background everywhere).
-  bool Evaluate(const SampleGrid& grid, float* out,
-                std::ptrdiff_t stride) const;
+  // When `stop` was asked to, it returns early and what was written is
+  // meaningless.
+  bool Evaluate(const SampleGrid& grid, float* out, std::ptrdiff_t stride,
+                const std::stop_token& stop = {}) const;
 
  private:
   class Impl;

@@ -144,7 +144,7 @@ Deviation DeviationModel::At(int level, HalfStep step, EverySecond columns,
   if (has_field) {
     roughness = scratch->roughness.Shape(x.inside.count, y.inside.count);
     by_roughness = config_.roughness_field->Evaluate(
-        scratch->grid, roughness.data, roughness.stride);
+        scratch->grid, roughness.data, roughness.stride, scratch->stop);
   }
   if (!by_roughness && !config_.amplitude) return uniform;
 

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "core/grid/grid_view.h"
@@ -48,6 +49,8 @@ class DeviationModel {
     SampleGrid grid;
     GridBuffer roughness;
     GridBuffer inside;
+    // Of the tile at work: once it was asked to, deviations are meaningless.
+    std::stop_token stop;
   };
 
   explicit DeviationModel(Config config);

@@ -120,6 +120,7 @@ FractalLattice::Grid FractalLattice::Compute(int level, const Window& window,
                                              const std::stop_token& stop,
                                              Scratch* scratch) const {
   const std::vector<Window> windows = Ancestors(level, window);
+  scratch->model.stop = stop;
   const int start = CheckpointLevel(windows);
   if (start == 0) {
     return Descend(Level0(windows.back(), scratch), 0, windows, stop, scratch);
@@ -178,7 +179,7 @@ bool FractalLattice::UpdateCheckpoint(int level, const Window& needed,
   const std::vector<Window> windows = Ancestors(level, window);
   const Grid made =
       Descend(Level0(windows.back(), scratch), 0, windows, stop, scratch);
-  if (made.view.data == nullptr) return false;
+  if (stop.stop_requested()) return false;
   const GridView kept = checkpoint.buffer.Shape(made.columns, made.rows);
   for (int j = 0; j < made.rows; ++j) {
     std::copy_n(made.view.Row(j), made.columns, kept.Row(j));

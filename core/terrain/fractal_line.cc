@@ -59,6 +59,7 @@ std::span<const float> FractalLine::Points(int level, std::int64_t first,
                                            Scratch* scratch) const {
   const std::vector<Line> lines = Ancestors(level, {first, count});
   scratch->buffered.clear();
+  scratch->model.stop = stop;
   Line line = lines.back();
   FillLevel0(line, &scratch->lines[0]);
   MeetConstraints(0, line, &scratch->lines[0], scratch);

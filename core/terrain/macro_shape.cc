@@ -76,8 +76,8 @@ class MacroShape::Impl {
     return static_cast<float>(base_);
   }
 
-  void Evaluate(const SampleGrid& grid, float* out,
-                std::ptrdiff_t stride) const {
+  void Evaluate(const SampleGrid& grid, float* out, std::ptrdiff_t stride,
+                const std::stop_token& stop) const {
     const SampleRect all = AllSamples(grid);
     if (all.empty()) return;
     if (only_raster_ != nullptr) {
@@ -97,7 +97,7 @@ class MacroShape::Impl {
       SampleRect band = all;
       band.row_begin = row;
       band.row_end = std::min(row + band_rows, all.rows());
-      EvaluateBand(grid, band, supports, sums.data(), heights.data());
+      EvaluateBand(grid, band, supports, stop, sums.data(), heights.data());
       for (std::size_t j = 0; j < band.rows(); ++j) {
         std::transform(
             sums.data() + j * all.columns(),
@@ -123,10 +123,12 @@ class MacroShape::Impl {
 
  private:
   void EvaluateBand(const SampleGrid& grid, const SampleRect& band,
-                    const std::vector<SampleRect>& supports, double* sums,
+                    const std::vector<SampleRect>& supports,
+                    const std::stop_token& stop, double* sums,
                     double* heights) const {
     std::fill_n(sums, band.columns() * band.rows(), base_);
     for (std::size_t k = 0; k < parts_.size(); ++k) {
+      if (stop.stop_requested()) return;
       const SampleRect rect = Intersection(supports[k], band);
       if (!rect.empty()) parts_[k].shape->Evaluate(grid, rect, heights);
       if (parts_[k].combine == MacroCombine::kAdd) {
@@ -178,8 +180,9 @@ MacroShape& MacroShape::operator=(MacroShape&&) noexcept = default;
 std::optional<float> MacroShape::constant() const { return impl_->constant(); }
 
 void MacroShape::Evaluate(const SampleGrid& grid, float* out,
-                          std::ptrdiff_t stride) const {
-  impl_->Evaluate(grid, out, stride);
+                          std::ptrdiff_t stride,
+                          const std::stop_token& stop) const {
+  impl_->Evaluate(grid, out, stride, stop);
 }
 
 MacroShape::Bounds MacroShape::BoundsIn(double min_x, double min_y,

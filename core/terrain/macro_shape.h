@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <stop_token>
 
 #include "core/grid/lattice_window.h"
 #include "core/terrain/terrain_spec.h"
@@ -29,8 +30,10 @@ class MacroShape {
 
   // Writes d at every sample: out[j * stride + i] for column i, row j; NaN
   // where there is no data.
-  void Evaluate(const SampleGrid& grid, float* out,
-                std::ptrdiff_t stride) const;
+  // When `stop` was asked to, it returns early and what was written is
+  // meaningless.
+  void Evaluate(const SampleGrid& grid, float* out, std::ptrdiff_t stride,
+                const std::stop_token& stop = {}) const;
 
   // Bounds that no value of d exceeds inside the box
   // [min_x, max_x] x [min_y, max_y] (world); conservative.

@@ -82,8 +82,8 @@ class Terrain::Impl {
                    const std::stop_token& stop,
                    TileScratch::Buffers* buffers) const;
   void MapBlock(What what, const Window& window, GridView fractal,
-                TileScratch::Buffers* buffers, float* out,
-                std::ptrdiff_t out_stride) const;
+                const std::stop_token& stop, TileScratch::Buffers* buffers,
+                float* out, std::ptrdiff_t out_stride) const;
 
   ResolvedSpec resolved_;
   MacroShape macro_;
@@ -261,13 +261,13 @@ bool Terrain::Impl::GenerateBlock(What what, int level, Sampling sampling,
   }
   if (stop.stop_requested()) return false;
   if (what == What::kMacro) {
-    macro_.Evaluate(buffers->grid, out, out_stride);
-    return true;
+    macro_.Evaluate(buffers->grid, out, out_stride, stop);
+    return !stop.stop_requested();
   }
   const GridView fractal = Fractal(level, sampling, window, stop, buffers);
   if (fractal.data == nullptr) return false;
-  MapBlock(what, window, fractal, buffers, out, out_stride);
-  return true;
+  MapBlock(what, window, fractal, stop, buffers, out, out_stride);
+  return !stop.stop_requested();
 }
 
 GridView Terrain::Impl::Fractal(int level, Sampling sampling,
@@ -293,6 +293,7 @@ GridView Terrain::Impl::Fractal(int level, Sampling sampling,
 }
 
 void Terrain::Impl::MapBlock(What what, const Window& window, GridView fractal,
+                             const std::stop_token& stop,
                              TileScratch::Buffers* buffers, float* out,
                              std::ptrdiff_t out_stride) const {
   if (what == What::kFractal) {
@@ -307,10 +308,11 @@ void Terrain::Impl::MapBlock(What what, const Window& window, GridView fractal,
   GridView macro;
   if (!macro_.constant()) {
     macro = buffers->macro.Shape(window.width, window.height);
-    macro_.Evaluate(buffers->grid, macro.data, macro.stride);
+    macro_.Evaluate(buffers->grid, macro.data, macro.stride, stop);
   }
   GridView fidelity = buffers->fidelity.Shape(window.width, window.height);
-  if (!fidelity_.Evaluate(buffers->grid, fidelity.data, fidelity.stride)) {
+  if (!fidelity_.Evaluate(buffers->grid, fidelity.data, fidelity.stride,
+                          stop)) {
     fidelity = {};
   }
   for (std::int64_t j = 0; j < window.height; ++j) {
