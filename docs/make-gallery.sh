@@ -94,8 +94,8 @@ run render "$work/refined.tif" --style perspective --width 960 --out "$pictures/
 picture jacksboro-block "The refined model as a block" \
   "The refined model as a whole, looked at from the south.
 
-*What to see.* Cumberland Mountain and Pine Mountain as long straight walls, with the
-mountains to the west of them and the valley to the east."
+*What to see.* Two long straight walls that meet, rugged mountains in the west and the low
+country in the east, down to slopes of a few samples."
 
 say "## Ground to start from" "" "Presets with SUBDIVISION and LINEAR, the defaults, in metres and without a border." ""
 preset demo/hills "No grid, no creases and no direction that stands out."
