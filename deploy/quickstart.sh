@@ -57,9 +57,6 @@ start_server() {
   exit 1
 }
 
-# A proxy that the environment names has no business with this machine's own ports.
-export no_grpc_proxy="127.0.0.1${no_grpc_proxy:+,${no_grpc_proxy}}"
-
 step "Packages"
 deploy/install-packages.sh
 
