@@ -44,8 +44,8 @@ class Source {
     distance_.Squared(grid, rect, reach_, out);
   }
 
-  // Adds the term of eq. 15 before it is divided by M, and 1 to M, to each
-  // sample of a row that is within reach.
+  // Adds the term of eq. 15 before it is divided by M, and the source's share of
+  // M, to each sample of a row that is within reach.
   void AddTo(std::span<const double> squared_distances, double* pulls,
              double* counts) const {
     if (is_smooth_) {
@@ -64,13 +64,16 @@ class Source {
     for (std::size_t i = 0; i < squared_distances.size(); ++i) {
       const bool reaches = squared_distances[i] != kInfinity;
       const double squared = reaches ? squared_distances[i] : 0.0;
-      double pull = difference_ / (1.0 + falloff_ * squared);
+      const double pull = difference_ / (1.0 + falloff_ * squared);
+      // A smooth source counts as it fades: if it counted as 1 from its border
+      // on, the pull of every other source would halve there at once.
+      double share = 1.0;
       if constexpr (kSmooth) {
         const double window = 1.0 - squared / square_reach;
-        pull *= window * window;
+        share = window * window;
       }
-      pulls[i] += reaches ? pull : 0.0;
-      counts[i] += reaches ? 1.0 : 0.0;
+      pulls[i] += reaches ? pull * share : 0.0;
+      counts[i] += reaches ? share : 0.0;
     }
   }
 

@@ -3,6 +3,8 @@
 //
 // With M sources whose reach holds p:
 //   F(p) = F0 + sum_m (1/M) (F*_m - F0) / (1 + f_m distance_m(p)^2).
+// A source with a smooth edge fades by a window w = (1 - (distance/reach)^2)^2,
+// as a term and in M alike: M = max(1, sum of w), so F has no step anywhere.
 // Sources are indexed, so the cost of a sample does not grow with their number;
 // contributions are summed in the order of the sources, whatever the grid.
 //

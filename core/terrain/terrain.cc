@@ -89,8 +89,9 @@ class Terrain::Impl {
   MacroShape macro_;
   ConstraintField fidelity_;
   HeightMap map_;
-  FractalLattice lattice_;
-  FractalLine line_;
+  // One of the two, by dimensions.
+  std::optional<FractalLattice> lattice_;
+  std::optional<FractalLine> line_;
 };
 
 // --- Preparing
@@ -123,14 +124,17 @@ Terrain::Impl::Impl(ResolvedSpec resolved,
     : resolved_(std::move(resolved)),
       macro_(spec().macro, spec().dimensions, *spec().frame),
       fidelity_(spec().continuous_constraints, ConstraintQuantity::kFidelity,
-                *spec().fidelity, spec().dimensions),
-      lattice_({spec().seed,
-                spec().source,
-                {spec().domain},
-                spec().refinement.has_value()},
-               DeviationModel(ModelConfig(resolved_)), constraints),
-      line_({spec().seed, spec().source, {spec().domain}},
-            DeviationModel(ModelConfig(resolved_)), constraints) {
+                *spec().fidelity, spec().dimensions) {
+  DeviationModel model(ModelConfig(resolved_));
+  const Mirror mirror = {spec().domain};
+  if (spec().dimensions == 2) {
+    lattice_.emplace(FractalLattice::Config{spec().seed, spec().source, mirror,
+                                            spec().refinement.has_value()},
+                     std::move(model), std::move(constraints));
+  } else {
+    line_.emplace(FractalLine::Config{spec().seed, spec().source, mirror},
+                  std::move(model), std::move(constraints));
+  }
   map_.mapping = spec().mapping;
   map_.inverse_soft_limit =
       spec().soft_limit ? static_cast<float>(1 / *spec().soft_limit) : 0.0f;
@@ -205,12 +209,12 @@ absl::Status Terrain::Impl::CheckRequest(const TileRequest& request) const {
 std::int64_t Terrain::Impl::GeneratedPoints(const TileRequest& request) const {
   const Window& window = request.window;
   if (spec().dimensions == 1) {
-    return line_.PointsComputed(request.level, window.width);
+    return line_->PointsComputed(request.level, window.width);
   }
   const auto of_block = [&](std::int64_t width, std::int64_t height) {
     const std::int64_t area = request.sampling == Sampling::kArea ? 1 : 0;
-    return lattice_.PointsComputed(request.level, width + 3 * area,
-                                   height + 3 * area) +
+    return lattice_->PointsComputed(request.level, width + 3 * area,
+                                    height + 3 * area) +
            area * width * height;
   };
   const Parts columns = {window.width};
@@ -276,14 +280,14 @@ GridView Terrain::Impl::Fractal(int level, Sampling sampling,
                                 TileScratch::Buffers* buffers) const {
   if (spec().dimensions == 2) {
     return sampling == Sampling::kPoint
-               ? lattice_.Points(level, window, stop, &buffers->lattice)
-               : lattice_.Centres(level, window, stop, &buffers->lattice);
+               ? lattice_->Points(level, window, stop, &buffers->lattice)
+               : lattice_->Centres(level, window, stop, &buffers->lattice);
   }
   const bool point = sampling == Sampling::kPoint;
   const std::span<const float> line =
-      point ? line_.Points(level, window.x, window.width, stop, &buffers->line)
-            : line_.Points(level + 1, 2 * window.x + 1, 2 * window.width - 1,
-                           stop, &buffers->line);
+      point ? line_->Points(level, window.x, window.width, stop, &buffers->line)
+            : line_->Points(level + 1, 2 * window.x + 1, 2 * window.width - 1,
+                            stop, &buffers->line);
   if (line.empty()) return {};
   const GridView plane = buffers->fractal.Shape(window.width, 1);
   for (std::int64_t i = 0; i < window.width; ++i) {

@@ -100,6 +100,17 @@ TEST(ConstraintFieldTest, ASmoothEdgeFadesToNothing) {
   EXPECT_FLOAT_EQ(ValueAt(one, 4, 0), F(0.8));
 }
 
+TEST(ConstraintFieldTest, ASmoothSourceDoesNotWeakenOthersWhereItBegins) {
+  Constraints two{PointAt(0, 0, 0.5, 0, 20), PointAt(10, 0, 0.9, 0, 4)};
+  const auto step_at_border = [&] {
+    return std::fabs(ValueAt(two, 6.001, 0) - ValueAt(two, 5.999, 0));
+  };
+  EXPECT_GT(step_at_border(), 0.1f);  // eq. 15: M jumps from 1 to 2
+  two[1].edge = ReachEdge::kSmooth;
+  EXPECT_LT(step_at_border(), 1e-5f);
+  EXPECT_FLOAT_EQ(ValueAt(two, 10, 0), F(0.8 + (0.5 - 0.8 + 0.9 - 0.8) / 2));
+}
+
 TEST(ConstraintFieldTest, LinesAndAreas) {
   ContinuousConstraint line = PointAt(0, 0, 0.5, 1, 3);
   line.kind = SourceKind::kPolyline;
@@ -177,7 +188,11 @@ Constraints ManySources(double reach) {
 }
 
 TEST(ConstraintFieldTest, ManySourcesAgreeWithEachOnItsOwn) {
-  const Constraints constraints = ManySources(12);
+  Constraints constraints = ManySources(12);
+  // A smooth source's share of M does not show in its value alone.
+  for (ContinuousConstraint& constraint : constraints) {
+    constraint.edge = ReachEdge::kStep;
+  }
   const ConstraintField all(constraints, ConstraintQuantity::kRoughness,
                             kBackground, 2);
   std::vector<ConstraintField> alone;
