@@ -234,8 +234,7 @@ FractalLattice::Grid FractalLattice::Level0(const Window& window,
   return grid;
 }
 
-// --- One level
-// -------------------------------------------------------------------
+// --- One level --------------------------------------------------------------
 
 FractalLattice::Grid FractalLattice::Refine(int level, const Grid& parent,
                                             GridView child,
@@ -386,8 +385,7 @@ FractalLattice::EdgeDeviations FractalLattice::DeviationsOfEdges(
   return deviations;
 }
 
-// --- The border of a bounded domain
-// ---------------------------------------------
+// --- The border of a bounded domain -----------------------------------------
 
 // An edge point on the border has three parents (M = 3): two corners on the
 // border, one centre inside.
@@ -436,8 +434,7 @@ void FractalLattice::MendBorderRows(int level, const Grid& parent,
   }
 }
 
-// --- Discrete constraints
-// ----------------------------------------------------------
+// --- Discrete constraints ---------------------------------------------------
 
 bool FractalLattice::OnBorder(const LatticePoint& point, int level) const {
   if (!config_.mirror.domain) return false;

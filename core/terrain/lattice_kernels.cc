@@ -45,8 +45,7 @@ HWY_INLINE VF FourPoint(VF a, VF b, VF c, VF d) {
                  hn::Mul(hn::Add(a, d), hn::Set(df, kOuter)));
 }
 
-// --- Centres
-// --------------------------------------------------------------------
+// --- Centres ----------------------------------------------------------------
 
 template <bool kVaries>
 void MidpointCentres(const CentreStep& s) {
@@ -116,8 +115,7 @@ void ComputeCentres(const CentreStep& s) {
   }
 }
 
-// --- Edges
-// ----------------------------------------------------------------------
+// --- Edges ------------------------------------------------------------------
 
 // Rows of corners and centres around cell row j.
 struct EdgeRows {
@@ -231,8 +229,7 @@ void ComputeEdges(const EdgeStep& s) {
   }
 }
 
-// --- Displacing in place
-// --------------------------------------------------------
+// --- Displacing in place ----------------------------------------------------
 
 template <bool kVaries>
 void AddDisplacementsTo(GridView plane, int columns, int rows,

@@ -94,8 +94,7 @@ class Terrain::Impl {
   std::optional<FractalLine> line_;
 };
 
-// --- Preparing
-// --------------------------------------------------------------------
+// --- Preparing --------------------------------------------------------------
 
 std::shared_ptr<const RasterSampler> Terrain::Impl::AmplitudeSampler(
     const ResolvedSpec& resolved) {
@@ -158,8 +157,7 @@ absl::StatusOr<std::unique_ptr<const Terrain::Impl>> Terrain::Impl::Create(
       std::make_shared<const DiscreteConstraints>(*std::move(constraints))));
 }
 
-// --- Requests
-// ---------------------------------------------------------------------
+// --- Requests ---------------------------------------------------------------
 
 std::optional<Window> Terrain::Impl::Extent(int level,
                                             Sampling sampling) const {
@@ -224,8 +222,7 @@ std::int64_t Terrain::Impl::GeneratedPoints(const TileRequest& request) const {
                   (window.height + rows.count - 1) / rows.count);
 }
 
-// --- Generating
-// -------------------------------------------------------------------
+// --- Generating -------------------------------------------------------------
 
 absl::Status Terrain::Impl::Generate(What what, const TileRequest& request,
                                      const std::stop_token& stop,
@@ -310,7 +307,8 @@ void Terrain::Impl::MapBlock(What what, const Window& window, GridView fractal,
     return;
   }
   GridView macro;
-  if (!macro_.constant()) {
+  const std::optional<float> constant = macro_.constant();
+  if (!constant) {
     macro = buffers->macro.Shape(window.width, window.height);
     macro_.Evaluate(buffers->grid, macro.data, macro.stride, stop);
   }
@@ -321,14 +319,12 @@ void Terrain::Impl::MapBlock(What what, const Window& window, GridView fractal,
   }
   for (std::int64_t j = 0; j < window.height; ++j) {
     MapRow(map_, fractal.Row(j), macro.data ? macro.Row(j) : nullptr,
-           macro_.constant().value_or(0),
-           fidelity.data ? fidelity.Row(j) : nullptr,
+           constant.value_or(0), fidelity.data ? fidelity.Row(j) : nullptr,
            static_cast<int>(window.width), out + j * out_stride);
   }
 }
 
-// --- Bounds
-// -----------------------------------------------------------------------
+// --- Bounds -----------------------------------------------------------------
 
 double Terrain::Impl::DeviationBoundOr(double unbounded) const {
   if (spec().mapping == HeightMapping::kBoltzmann) {
@@ -385,8 +381,7 @@ HeightRange Terrain::Impl::LikelyRange() const {
           static_cast<float>(bounds.maximum + deviation)};
 }
 
-// --- The public face
-// --------------------------------------------------------------
+// --- The public face --------------------------------------------------------
 
 Terrain::Terrain(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 Terrain::~Terrain() = default;

@@ -111,8 +111,7 @@ struct MacroSpec {
   std::vector<MacroPart> parts;
 };
 
-// --- Constraints
-// ---------------------------------------------------------------
+// --- Constraints ------------------------------------------------------------
 
 struct DiscreteConstraint {
   Point2 point;
@@ -136,8 +135,7 @@ struct ContinuousConstraint {
   std::vector<Point2> vertices;
 };
 
-// --- The whole
-// -----------------------------------------------------------------
+// --- The whole --------------------------------------------------------------
 
 struct Domain {
   std::int64_t cells_x = 0;

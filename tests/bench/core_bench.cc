@@ -30,8 +30,7 @@ void ReportSamples(benchmark::State& state, std::int64_t samples) {
                              benchmark::Counter::kInvert);
 }
 
-// --- Yardsticks
-// --------------------------------------------------------------------
+// --- Yardsticks ---
 
 void Memset(benchmark::State& state, std::int64_t side) {
   std::vector<float> out(static_cast<std::size_t>(side * side));
@@ -56,8 +55,7 @@ void HashBound(benchmark::State& state, std::int64_t side) {
   ReportSamples(state, side * side);
 }
 
-// --- Tiles
-// -------------------------------------------------------------------------
+// --- Tiles ---
 
 // A square tile about the origin of the world, and the spec to take it from.
 void Tile(benchmark::State& state, const TerrainSpec& spec, int level,
@@ -159,8 +157,7 @@ TerrainSpec Refined() {
   return spec;
 }
 
-// --- The list
-// ----------------------------------------------------------------------
+// --- The list ---------------------------------------------------------------
 
 constexpr std::int64_t kSides[] = {64, 256, 1024};
 constexpr int kLevels[] = {8, 20, 30};

@@ -59,8 +59,7 @@ double MeanDeviation(const TerrainSpec& spec, const Window& window = kWindow) {
                        MacroPatch(*terrain, kLevel, window));
 }
 
-// --- Fidelity
-// ----------------------------------------------------------------------
+// --- Fidelity ---------------------------------------------------------------
 
 struct Chain {
   FractalSource source;
@@ -188,8 +187,7 @@ TEST(Bounds, OfTheSoftLimitAreNeverPassedAndSmallDeviationsAreKept) {
   }
 }
 
-// --- Roughness by region
-// -----------------------------------------------------------
+// --- Roughness by region ----------------------------------------------------
 
 TEST(RoughnessRegion, IsAsSmoothInsideAsItsHSays) {
   for (const double inside_h : {0.65, 0.95}) {
@@ -217,8 +215,7 @@ TEST(RoughnessRegion, IsAsSmoothInsideAsItsHSays) {
   }
 }
 
-// --- Discrete constraints
-// ----------------------------------------------------------
+// --- Discrete constraints ---------------------------------------------------
 
 TEST(DiscreteConstraints, AreMetToTheBitAtEveryLevelFromTheirOwn) {
   for (const int dimensions : {1, 2}) {

@@ -66,8 +66,7 @@ void Record(const std::string& what, const Hurst& h) {
       what, Text(h.x) + " " + Text(h.y) + " " + Text(h.diagonal));
 }
 
-// --- The Hurst exponent
-// ------------------------------------------------------------
+// --- The Hurst exponent -----------------------------------------------------
 
 class Roughness : public testing::TestWithParam<double> {};
 
@@ -142,8 +141,7 @@ TEST(RoughnessOfALine, IsRecoveredFromTheVariogram) {
   }
 }
 
-// --- Creases
-// -----------------------------------------------------------------------
+// --- Creases ----------------------------------------------------------------
 
 double CreasesOf(FractalSource source, double roughness) {
   SecondDifferences differences(8);
@@ -173,8 +171,7 @@ TEST_P(Roughness, OfMidpointLeavesTheCreasesItIsKnownFor) {
   EXPECT_NEAR(creases, known, 0.06 * known);
 }
 
-// --- Variance
-// ----------------------------------------------------------------------
+// --- Variance ---------------------------------------------------------------
 
 struct Spread {
   double variance = 0;

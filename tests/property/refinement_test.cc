@@ -68,8 +68,7 @@ class Jacksboro : public testing::Test {
   std::shared_ptr<const Raster> model_;
 };
 
-// --- The posts
-// ---------------------------------------------------------------------
+// --- The posts --------------------------------------------------------------
 
 TEST_F(Jacksboro, AtZeroFidelityIsTheInterpolatedModel) {
   TerrainSpec spec = Spec();
@@ -141,8 +140,7 @@ TEST_F(Jacksboro, DeviatesAsTheRootOfFidelity) {
   EXPECT_NEAR(mean_deviation(900) / one, 3, 3e-3);
 }
 
-// --- Across the post spacing
-// -------------------------------------------------------
+// --- Across the post spacing ------------------------------------------------
 
 // H by the variogram, along x and y: half the slope by least squares of its
 // logarithm against that of the lag. For the model over lags of 1 to 4 posts,
@@ -188,8 +186,7 @@ TEST_F(Jacksboro, ContinuesTheVariogramThroughThePostSpacing) {
   EXPECT_GT(none.y, above.y + 0.1);
 }
 
-// --- No trace of the posts
-// ---------------------------------------------------------
+// --- No trace of the posts --------------------------------------------------
 
 Patch Shaded(const Patch& heights) {
   Patch shade = {heights.width, heights.height,

@@ -143,8 +143,7 @@ std::vector<Window> Tiles(const Window& whole, std::int64_t size) {
   return tiles;
 }
 
-// --- What the cases are
-// ------------------------------------------------------------
+// --- What the cases are -----------------------------------------------------
 
 TEST(RandomTerrain, ReachesEveryIngredient) {
   std::set<std::string> seen;
@@ -198,8 +197,7 @@ TEST(RandomTerrain, FeelsItsConstraintsAndItsMacroShape) {
   EXPECT_GT(felt, constrained * 3 / 5);
 }
 
-// --- Where a sample is seen from
-// ---------------------------------------------------
+// --- Where a sample is seen from --------------------------------------------
 
 TEST(Tiles, EqualTheSameCutOfALargerTile) {
   ForEachCase(1000, [](const Subject& s) {
@@ -281,8 +279,7 @@ TEST(Tiles, OfSuccessiveAdditionsAreNotNested) {
   EXPECT_NE(coarse, fine);
 }
 
-// --- Who computes it
-// ---------------------------------------------------------------
+// --- Who computes it --------------------------------------------------------
 
 Heights GenerateByThreads(const Terrain& terrain, const TileRequest& request,
                           int threads) {
