@@ -44,8 +44,8 @@ class Source {
     distance_.Squared(grid, rect, reach_, out);
   }
 
-  // Adds the term of eq. 15 before it is divided by M, and the source's share of
-  // M, to each sample of a row that is within reach.
+  // Adds the term of eq. 15 before it is divided by M, and the source's share
+  // of M, to each sample of a row that is within reach.
   void AddTo(std::span<const double> squared_distances, double* pulls,
              double* counts) const {
     if (is_smooth_) {
