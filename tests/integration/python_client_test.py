@@ -138,8 +138,10 @@ class PythonClientTest(unittest.TestCase):
         numpy.testing.assert_array_equal(heights[::4, ::4], posts)
 
     def test_memory_stays_flat_over_a_huge_stream(self):
-        # 65,536 x 65,536 samples are 16 GiB; after the first few hundred tiles the
-        # server must not grow any more.
+        # 65,536 x 65,536 samples are 16 GiB. After the first few hundred tiles the
+        # server must not grow any more: 400 MB more of tiles may cost it less than
+        # a tenth (the sanitizer's quarantine takes half of that; a release server
+        # stays within 1 MB).
         request = self.request(level=16, window=common_pb2.Window(width=65536, height=65536))
         stream = self.terrain.StreamTiles(request, timeout=240)
         settled = None
@@ -151,7 +153,7 @@ class PythonClientTest(unittest.TestCase):
                 break
         grown = resident_bytes(self.server) - settled
         stream.cancel()
-        self.assertLess(grown, 8 << 20)
+        self.assertLess(grown, 32 << 20)
 
     def test_server_says_what_it_allows(self):
         info = info_pb2_grpc.InfoServiceStub(self.channel).GetServerInfo(info_pb2.GetServerInfoRequest(), timeout=60)
