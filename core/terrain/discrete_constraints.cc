@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/violations.h"
+#include "core/terrain/spec_checks.h"
 
 namespace terrane::core {
 namespace {
@@ -59,8 +60,8 @@ absl::StatusOr<DiscreteConstraints> DiscreteConstraints::Create(
       violations.Add(path + ".radius",
                      "must be at least the spacing of level " +
                          std::to_string(kMaxLevel) + ", " +
-                         std::to_string(std::ldexp(spacing, -kMaxLevel)) +
-                         ", got " + std::to_string(*constraint.radius));
+                         NumberText(std::ldexp(spacing, -kMaxLevel)) +
+                         ", got " + NumberText(*constraint.radius));
       continue;
     }
     const double x =

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/violations.h"
+#include "core/terrain/spec_checks.h"
 
 namespace terrane::core {
 namespace {
@@ -48,9 +49,12 @@ absl::Status PlacePoints(const Terrain& terrain, int level,
       const double high =
           extent ? std::min(static_cast<double>(count - 1), limit) : limit;
       if (!(at.index >= low && at.index + at.along <= high)) {
-        violations.Add(path + name,
-                       "must be finite and inside the domain, got " +
-                           std::to_string(position));
+        const auto world = [&](double index) {
+          return origin + std::ldexp(index, -level) * spacing;
+        };
+        const auto [first, last] = std::minmax({world(low), world(high)});
+        violations.Add(path + name, "must be in " + Range{first, last}.Text() +
+                                        ", got " + NumberText(position));
         return AxisPlace();
       }
       return at;
