@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/grid/distance_kernels.h"
+
 namespace terrane::core {
 namespace {
 
@@ -126,13 +128,12 @@ void LineDistance::LowerRow(const Segment& segment, std::span<const double> x,
     }
     return;
   }
-  // A point: the most frequent source of all, and short enough to vectorise.
-  const double ey = std::fabs(y - segment.y);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double ex = std::fabs(x[i] - segment.x);
-    const double squared =
-        kNorm == Norm::kL2 ? ex * ex + ey * ey : (ex + ey) * (ex + ey);
-    row[i] = std::min(row[i], squared);
+  // A point: the most frequent source of all.
+  const double gap = std::fabs(y - segment.y);
+  if constexpr (kNorm == Norm::kL2) {
+    LowerToPointL2(x.data(), x.size(), segment.x, gap, row);
+  } else {
+    LowerToPointL1(x.data(), x.size(), segment.x, gap, row);
   }
 }
 
@@ -209,9 +210,7 @@ void LineDistance::FillPlainly(const Target& target, const SampleRect& rect,
         LowerRow<Norm::kL1>(segment, x, y, row);
       }
     }
-    for (std::size_t i = 0; i < rect.columns(); ++i) {
-      row[i] = row[i] > target.reach_squared ? kInfinity : row[i];
-    }
+    CutAbove(target.reach_squared, rect.columns(), row);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "core/grid/box_index.h"
 #include "core/grid/line_distance.h"
 #include "core/grid/sample_rect.h"
+#include "core/terrain/constraint_kernels.h"
 
 namespace terrane::core {
 namespace {
@@ -30,10 +31,10 @@ class Source {
   Source(const ContinuousConstraint& constraint, double background,
          int dimensions)
       : distance_(MakeDistance(constraint, dimensions)),
-        difference_(constraint.target - background),
-        falloff_(constraint.falloff),
         reach_(constraint.reach),
-        is_smooth_(constraint.edge == ReachEdge::kSmooth) {}
+        term_{constraint.target - background, constraint.falloff,
+              constraint.reach * constraint.reach,
+              constraint.edge == ReachEdge::kSmooth} {}
 
   // Holds the source's domain, eq. 13.
   Box ReachBox() const { return distance_.box().Grown(reach_); }
@@ -45,38 +46,16 @@ class Source {
   }
 
   // Adds the term of eq. 15 before it is divided by M, and the source's share
-  // of M, to each sample of a row that is within reach.
+  // of M, to each sample of a row that is within reach. A smooth source counts
+  // as it fades: if it counted as 1 from its border on, the pull of every other
+  // source would halve there at once.
   void AddTo(std::span<const double> squared_distances, double* pulls,
              double* counts) const {
-    if (is_smooth_) {
-      AddTerms<true>(squared_distances, pulls, counts);
-    } else {
-      AddTerms<false>(squared_distances, pulls, counts);
-    }
+    AddSourceTerms(term_, squared_distances.data(), squared_distances.size(),
+                   pulls, counts);
   }
 
  private:
-  // Without branches: out of reach adds 0 to both.
-  template <bool kSmooth>
-  void AddTerms(std::span<const double> squared_distances, double* pulls,
-                double* counts) const {
-    const double square_reach = reach_ * reach_;
-    for (std::size_t i = 0; i < squared_distances.size(); ++i) {
-      const bool reaches = squared_distances[i] != kInfinity;
-      const double squared = reaches ? squared_distances[i] : 0.0;
-      const double pull = difference_ / (1.0 + falloff_ * squared);
-      // A smooth source counts as it fades: if it counted as 1 from its border
-      // on, the pull of every other source would halve there at once.
-      double share = 1.0;
-      if constexpr (kSmooth) {
-        const double window = 1.0 - squared / square_reach;
-        share = window * window;
-      }
-      pulls[i] += reaches ? pull * share : 0.0;
-      counts[i] += reaches ? share : 0.0;
-    }
-  }
-
   static LineDistance MakeDistance(const ContinuousConstraint& constraint,
                                    int dimensions) {
     std::vector<LineDistance::Vertex> vertices;
@@ -94,10 +73,8 @@ class Source {
   }
 
   LineDistance distance_;
-  double difference_;
-  double falloff_;
   double reach_;
-  bool is_smooth_;
+  SourceTerm term_;
 };
 
 // A band of samples being summed; the memory is reused from band to band.
