@@ -31,6 +31,11 @@ void* CountAndAllocate(std::size_t size) {
 
 }  // namespace
 
+#ifndef __clang__
+// With some flags GCC sees through operator delete but not through operator
+// new.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+#endif
 void* operator new(std::size_t size) { return CountAndAllocate(size); }
 void* operator new[](std::size_t size) { return CountAndAllocate(size); }
 void operator delete(void* memory) noexcept { std::free(memory); }
