@@ -10,6 +10,7 @@
 #include "client/commands/shared_options.h"
 #include "client/csv.h"
 #include "client/exit_code.h"
+#include "core/grid/lattice_window.h"
 
 namespace terrane::client {
 namespace {
@@ -95,7 +96,7 @@ void AddHeightsCommand(CLI::App* app, Action* action) {
       ->add_option("--level", command->level,
                    "Lattice level that is interpolated (default: the preset's "
                    "view, 3 with --dem, else 0)")
-      ->check(CLI::Range(0, 40));
+      ->check(CLI::Range(0, core::kMaxLevel));
   subcommand->add_option("--points", command->points,
                          "CSV of x,y (default: standard input)");
   subcommand->add_option("--out", command->out,

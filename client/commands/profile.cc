@@ -7,6 +7,7 @@
 #include "client/commands/shared_options.h"
 #include "client/csv.h"
 #include "client/exit_code.h"
+#include "core/grid/lattice_window.h"
 
 namespace terrane::client {
 namespace {
@@ -58,7 +59,7 @@ void AddProfileCommand(CLI::App* app, Action* action) {
       ->add_option("--level", command->level,
                    "Each level halves the spacing (default: the preset's "
                    "view, else 0)")
-      ->check(CLI::Range(0, 40));
+      ->check(CLI::Range(0, core::kMaxLevel));
   subcommand->add_option("--first", command->first,
                          "First sample of that level");
   subcommand

@@ -8,6 +8,7 @@
 
 #include "client/local_backend.h"
 #include "client/remote_backend.h"
+#include "core/grid/lattice_window.h"
 
 namespace terrane::client {
 namespace {
@@ -120,7 +121,7 @@ void AddExtentOptions(CLI::App* command, ExtentOptions* options) {
       ->add_option("--level", options->level,
                    "Each level halves the spacing (default: the preset's "
                    "view, 3 with --dem, else 0)")
-      ->check(CLI::Range(0, 40))
+      ->check(CLI::Range(0, core::kMaxLevel))
       ->group("Samples");
   command
       ->add_option("--window", options->window,

@@ -361,7 +361,8 @@ FractalLattice::EdgeDeviations FractalLattice::DeviationsOfEdges(
                        row_parity, slot, scratch);
   };
   EdgeDeviations deviations = {of(1, 0, 0), of(0, 1, 1), {}, {}};
-  if (config_.source == FractalSource::kSuccessive) {
+  const bool displace_all = config_.source == FractalSource::kSuccessive;
+  if (displace_all) {
     deviations.corner = of(0, 0, 2);
     deviations.centre = of(1, 1, 3);
   }
@@ -379,8 +380,10 @@ FractalLattice::EdgeDeviations FractalLattice::DeviationsOfEdges(
       deviations.corner.varies() || deviations.centre.varies()) {
     spread(&deviations.horizontal, 0);
     spread(&deviations.vertical, 1);
-    spread(&deviations.corner, 2);
-    spread(&deviations.centre, 3);
+    if (displace_all) {
+      spread(&deviations.corner, 2);
+      spread(&deviations.centre, 3);
+    }
   }
   return deviations;
 }
