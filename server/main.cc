@@ -182,6 +182,11 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
+  if (flags.server.listen.find(':') == std::string::npos) {
+    std::cerr << "terrane-server: --listen must be ADDRESS:PORT, got "
+              << flags.server.listen << '\n';
+    return kExitUsage;
+  }
   if (!flags.insecure && !IsLoopback(flags.server.listen)) {
     std::cerr << "terrane-server: --listen " << flags.server.listen
               << " is reachable from other machines; use 127.0.0.1, or add "

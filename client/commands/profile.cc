@@ -1,6 +1,7 @@
 // `terrane profile`: samples of a 1-D recipe as CSV.
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <memory>
 
 #include "client/commands/command.h"
@@ -65,7 +66,7 @@ void AddProfileCommand(CLI::App* app, Action* action) {
   subcommand
       ->add_option("--count", command->count,
                    "Samples (default: all of a bounded domain)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(std::int64_t{0}, core::kMaxIndex));
   subcommand->add_option("--out", command->out,
                          "CSV file to write (default: standard output)");
   AddConnectionOptions(subcommand, &command->connection);
