@@ -15,6 +15,14 @@ constexpr double kLog2E = 0x1.71547652b82fep+0;
 constexpr double kLn2High = 0x1.62e42feep-1;
 constexpr double kLn2Low = 0x1.a39ef35793c76p-33;
 
+constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
+// pi / 2 in three parts; the first two have 33 bits, so their products with a
+// number of quarter turns are exact.
+constexpr double kHalfPiHigh = 0x1.921fb544p+0;
+constexpr double kHalfPiMiddle = 0x1.0b4611a6p-34;
+constexpr double kHalfPiLow = 0x1.3198a2e037073p-69;
+constexpr double kLargestAngle = 1e5;
+
 // 2^whole e^r for r in [-0.35, 0.35]: Taylor to r^14 leaves less than 2^-60.
 double ScaledExp(double r, double whole) {
   double sum = 1.0;
@@ -48,6 +56,30 @@ SplitLog2 SplitLog2Of(double x) {
 double UpperHalf(double value) {
   constexpr std::uint64_t kMask = ~((std::uint64_t{1} << 27) - 1);
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) & kMask);
+}
+
+// Sine of r + quarters * pi / 2 for r in [-pi/4, pi/4]: Taylor to r^21 leaves
+// less than 2^-70.
+double SinOfQuarters(double r, std::int64_t quarters) {
+  const double r2 = r * r;
+  const bool is_cosine = (quarters & 1) != 0;
+  double sum = 1.0;
+  for (int k = is_cosine ? 20 : 21; k > 1; k -= 2) {
+    sum = 1.0 - sum * r2 / (k * (k - 1));
+  }
+  if (!is_cosine) sum *= r;
+  return (quarters & 2) != 0 ? -sum : sum;
+}
+
+// Sine of x plus `more` quarter turns.
+double SinPlusQuarters(double x, std::int64_t more) {
+  if (!(std::fabs(x) <= kLargestAngle)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const double quarters = std::nearbyint(x * kTwoOverPi);
+  const double r = ((x - quarters * kHalfPiHigh) - quarters * kHalfPiMiddle) -
+                   quarters * kHalfPiLow;
+  return SinOfQuarters(r, static_cast<std::int64_t>(quarters) + more);
 }
 
 }  // namespace
@@ -95,5 +127,9 @@ double DetExp(double x) {
 }
 
 double DetLog(double x) { return DetLog2(x) * kLn2; }
+
+double DetSin(double x) { return SinPlusQuarters(x, 0); }
+
+double DetCos(double x) { return SinPlusQuarters(x, 1); }
 
 }  // namespace terrane::core

@@ -21,6 +21,10 @@ double DetPow(double x, double y);
 double DetExp(double x);
 // Natural logarithm of x > 0.
 double DetLog(double x);
+// Sine and cosine of x radians, |x| <= 10^5; NaN beyond. Within 4 ulp, or
+// within 2^-60 where that is more (next to a zero of theirs).
+double DetSin(double x);
+double DetCos(double x);
 
 }  // namespace terrane::core
 

@@ -101,5 +101,30 @@ TEST(DetMathTest, Pow) {
   EXPECT_TRUE(std::isnan(DetPow(2, kNan)));
 }
 
+// Next to its zeros a sine has few digits of its own: 2^-60 is allowed there.
+template <typename Actual, typename Expected>
+void ExpectSineWithin(double range, Actual actual, Expected expected) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> angle(-range, range);
+  for (int n = 0; n < kDraws; ++n) {
+    const double x = angle(random);
+    if (std::fabs(actual(x) - expected(x)) <= 0x1p-60) continue;
+    ASSERT_LE(UlpsBetween(actual(x), expected(x)), 4)
+        << "at " << x << ": " << actual(x) << " for " << expected(x);
+  }
+}
+
+TEST(DetMathTest, SinAndCos) {
+  for (const double range : {0.8, 7.0, 1e5}) {
+    ExpectSineWithin(range, DetSin, [](double x) { return std::sin(x); });
+    ExpectSineWithin(range, DetCos, [](double x) { return std::cos(x); });
+  }
+  EXPECT_EQ(DetSin(0), 0);
+  EXPECT_EQ(DetCos(0), 1);
+  EXPECT_TRUE(std::isnan(DetSin(1.1e5)));
+  EXPECT_TRUE(std::isnan(DetCos(kInfinity)));
+  EXPECT_TRUE(std::isnan(DetSin(kNan)));
+}
+
 }  // namespace
 }  // namespace terrane::core

@@ -1,0 +1,70 @@
+#include "core/tree/estimate.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/tree/chromosome.h"
+#include "core/tree/segment_block.h"
+#include "core/tree/tree_generator.h"
+
+namespace terrane::core {
+namespace {
+
+constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+
+// Of numbers that are not negative.
+std::int64_t Times(std::int64_t a, std::int64_t b) {
+  return b != 0 && a > kMost / b ? kMost : a * b;
+}
+std::int64_t Plus(std::int64_t a, std::int64_t b) {
+  return a > kMost - b ? kMost : a + b;
+}
+
+// ABSOLUTE: a generation whose largest length code is 0 has no rows.
+int LastGeneration(const TreeSpec& spec) {
+  if (spec.form != TreeForm::kGenetic ||
+      spec.length_mode == LengthMode::kRelative) {
+    return spec.depth;
+  }
+  int generation = 0;
+  std::uint32_t code = CodeOf(TrunkChromosome(spec.genetic), Gene::kLength);
+  while (generation < spec.depth && LargestChildLength(code) > 0) {
+    code = LargestChildLength(code);
+    ++generation;
+  }
+  return generation;
+}
+
+}  // namespace
+
+std::uint32_t TrunkChromosome(const GeneticSpec& genetic) {
+  return genetic.trunk.value_or(DefaultTrunk(genetic.monopodial_share > 0));
+}
+
+int MostChildren(const TreeSpec& spec) {
+  if (spec.form != TreeForm::kGenetic) return 2;
+  return kPositions + (spec.genetic.leader ? 1 : 0);
+}
+
+TreeEstimate EstimateTree(const TreeSpec& spec) {
+  TreeEstimate estimate;
+  estimate.last_generation = LastGeneration(spec);
+  std::int64_t generation = 1;
+  std::int64_t branches = 1;
+  for (int g = 1; g <= estimate.last_generation; ++g) {
+    generation = Times(generation, MostChildren(spec));
+    branches = Plus(branches, generation);
+  }
+  std::int64_t rows = Times(branches, spec.bending.pieces);
+  if (spec.max_segments > 0) {
+    rows = std::min(rows, spec.max_segments);
+    // The cut tree's queue holds no more branches than the rows' children.
+    generation = std::min(generation, Times(rows, MostChildren(spec)));
+  }
+  estimate.segments_most = rows;
+  estimate.bytes_most = Times(rows, SegmentBytes(spec.dimensions));
+  estimate.queue_bytes_most = Times(generation, QueueBytesOfBranch(spec));
+  return estimate;
+}
+
+}  // namespace terrane::core
