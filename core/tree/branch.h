@@ -53,7 +53,10 @@ struct ChildPlan {
   // What is left of the parent's pipes at its tip.
   float tip_pipes = 1;
 
-  void Add(const PlannedChild& child) { children[count++] = child; }
+  void Clear() {
+    count = 0;
+    tip_pipes = 1;
+  }
 };
 
 }  // namespace terrane::core

@@ -41,13 +41,36 @@ HWY_INLINE CoinPair Coins(Members d, Lanes words, std::uint32_t threshold) {
 
 // The low bits of a gene, up to a cut that a byte chooses evenly: at least one
 // bit, and at least one less than all unless the gene has but one.
-HWY_INLINE Lanes LowBits(Members d, Lanes bytes, GeneField field) {
+template <int kGene>
+HWY_INLINE Lanes LowBits(Members d, Lanes bytes) {
+  constexpr GeneField kField = kGeneFields[kGene];
+  if constexpr (kField.width == 1) return hn::Set(d, kField.Mask());
   const auto one = hn::Set(d, 1u);
-  if (field.width == 1) return hn::Set(d, field.Mask());
-  const auto cuts = hn::Set(d, static_cast<std::uint32_t>(field.width - 1));
+  const auto cuts = hn::Set(d, static_cast<std::uint32_t>(kField.width - 1));
   const auto cut = hn::Add(one, hn::ShiftRight<8>(hn::Mul(bytes, cuts)));
-  const auto low = hn::Sub(hn::Shl(one, cut), one);
-  return hn::ShiftLeftSame(low, field.shift);
+  return hn::ShiftLeft<kField.shift>(hn::Sub(hn::Shl(one, cut), one));
+}
+
+// Adds to the bits that come from the father, and to the genes that mutate.
+template <int kPair>
+HWY_INLINE void CrossPair(Members d, const Breeding& breeding,
+                          std::size_t first, Lanes* taken, Lanes* mutates) {
+  const CoinPair crosses =
+      Coins(d, Words(d, breeding, first, kWordOfCrossover + kPair),
+            breeding.crossover);
+  const CoinPair hits = Coins(
+      d, Words(d, breeding, first, kWordOfMutation + kPair), breeding.mutation);
+  const auto cuts = hn::ShiftRight<16 * (kPair % 2)>(
+      Words(d, breeding, first, kWordOfCuts + kPair / 2));
+  const auto byte = hn::Set(d, 0xFFu);
+  const auto even = LowBits<2 * kPair>(d, hn::And(cuts, byte));
+  const auto odd =
+      LowBits<2 * kPair + 1>(d, hn::And(hn::ShiftRight<8>(cuts), byte));
+  *taken = hn::Or(
+      *taken, hn::Or(hn::And(crosses.even, even), hn::And(crosses.odd, odd)));
+  *mutates =
+      hn::Or(*mutates, hn::Or(hn::And(hits.even, hn::Set(d, 1u << 2 * kPair)),
+                              hn::And(hits.odd, hn::Set(d, 2u << 2 * kPair))));
 }
 
 // 16 random bits as an even choice of [0, count).
@@ -113,27 +136,11 @@ void BreedMembers(const Breeding& breeding, std::size_t members,
   for (std::size_t first = 0; first < members; first += hn::Lanes(d)) {
     auto taken = hn::Zero(d);
     auto mutates = hn::Zero(d);
-    for (std::uint32_t pair = 0; pair < kGenes / 2; ++pair) {
-      const CoinPair crosses =
-          Coins(d, Words(d, breeding, first, kWordOfCrossover + pair),
-                breeding.crossover);
-      const CoinPair hits =
-          Coins(d, Words(d, breeding, first, kWordOfMutation + pair),
-                breeding.mutation);
-      const auto cuts =
-          hn::ShiftRightSame(Words(d, breeding, first, kWordOfCuts + pair / 2),
-                             static_cast<int>(16 * (pair % 2)));
-      const auto byte = hn::Set(d, 0xFFu);
-      const GeneField even = kGeneFields[2 * pair];
-      const GeneField odd = kGeneFields[2 * pair + 1];
-      taken = hn::Or(
-          taken, hn::And(crosses.even, LowBits(d, hn::And(cuts, byte), even)));
-      taken = hn::Or(
-          taken,
-          hn::And(crosses.odd,
-                  LowBits(d, hn::And(hn::ShiftRight<8>(cuts), byte), odd)));
-      mutates = hn::Or(mutates, hn::And(hits.even, hn::Set(d, 1u << 2 * pair)));
-      mutates = hn::Or(mutates, hn::And(hits.odd, hn::Set(d, 2u << 2 * pair)));
+    CrossPair<0>(d, breeding, first, &taken, &mutates);
+    CrossPair<1>(d, breeding, first, &taken, &mutates);
+    if (breeding.all_genes) {
+      CrossPair<2>(d, breeding, first, &taken, &mutates);
+      CrossPair<3>(d, breeding, first, &taken, &mutates);
     }
     const Parents parents =
         ChooseParents(d, Words(d, breeding, first, kWordOfParents), breeding);

@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "core/noise/counter_hash.h"
+#include "core/tree/chromosome.h"
 #include "core/tree/draws.h"
 
 namespace terrane::core {
@@ -31,6 +32,8 @@ struct Breeding {
   const std::uint32_t* survivors = nullptr;
   std::uint32_t survivor_count = 0;
   RowKey key;
+  // Or only the first half: length, angle, axis and side.
+  bool all_genes = true;
   // Thresholds of 16-bit coins.
   std::uint32_t crossover = 0;
   std::uint32_t mutation = 0;

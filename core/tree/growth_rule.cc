@@ -42,11 +42,12 @@ void SplitPipes(float length, bool monopodial, ChildPlan* plan) {
   for (std::size_t i = 0; i < plan->count; ++i) {
     if (!leads(plan->children[i])) total += plan->children[i].length;
   }
+  const float of_length = 1.0f / total;
   for (std::size_t i = 0; i < plan->count; ++i) {
     PlannedChild* child = &plan->children[i];
-    child->pipes = (leads(*child) ? axis : child->length) / total;
+    child->pipes = (leads(*child) ? axis : child->length) * of_length;
   }
-  if (monopodial) plan->tip_pipes = axis / total;
+  if (monopodial) plan->tip_pipes = axis * of_length;
 }
 
 }  // namespace
@@ -61,6 +62,9 @@ GrowthRule::GrowthRule(const TreeSpec& spec)
       azimuth_spread_(static_cast<std::int64_t>(
           spec.genetic.azimuth_spread_deg / 360 * kTurn)) {
   const GeneticSpec& genetic = spec.genetic;
+  for (std::uint32_t code = 0; code <= kPositionCodeMax; ++code) {
+    positions_[code] = static_cast<float>(PositionOfCode(code));
+  }
   const std::uint32_t trunk_code = CodeOf(trunk_chromosome_, Gene::kLength);
   for (std::uint32_t code = 0; code <= kLengthCodeMax; ++code) {
     const double share = static_cast<double>(code) / kLengthCodeMax;
@@ -107,25 +111,28 @@ std::size_t GrowthRule::MembersNeeded(std::uint32_t chromosome) const {
   return count + (leads ? 1 : 0);
 }
 
-ChildPlan GrowthRule::Plan(const Branch& branch, const BranchDraws& draws,
-                           std::span<const std::uint32_t> members) const {
+void GrowthRule::Plan(const Branch& branch, const BranchDraws& draws,
+                      std::span<const std::uint32_t> members, bool will_grow,
+                      ChildPlan* plan) const {
+  plan->Clear();
   switch (spec_.form) {
     case TreeForm::kGenetic:
-      return PlanGenetic(branch, draws, members);
+      PlanGenetic(branch, draws, members, will_grow, plan);
+      return;
     case TreeForm::kPlain:
-      return PlanPlain(branch);
+      PlanPlain(branch, plan);
+      return;
     case TreeForm::kCantor:
-      return PlanCantor(branch, members);
+      PlanCantor(branch, members, plan);
+      return;
   }
-  return {};
 }
 
-ChildPlan GrowthRule::PlanPlain(const Branch& branch) const {
+void GrowthRule::PlanPlain(const Branch& branch, ChildPlan* plan) const {
   const bool monopodial = spec_.plain.offset < 1;
-  ChildPlan plan;
   for (std::size_t i = 0; i < kPlainChildren; ++i) {
     const bool left = i == 1;
-    PlannedChild child;
+    PlannedChild& child = plan->children[plan->count++];
     child.index = i;
     child.flags = static_cast<std::uint8_t>(SideFlag(left) |
                                             (monopodial ? kMonopodialFlag : 0));
@@ -133,17 +140,15 @@ ChildPlan GrowthRule::PlanPlain(const Branch& branch) const {
     child.length = static_cast<float>(spec_.plain.contraction) * branch.length;
     child.deviation = plain_deviation_;
     child.azimuth = left ? kToTheLeft : kToTheRight;
-    plan.Add(child);
   }
-  SplitPipes(branch.length, monopodial, &plan);
-  return plan;
+  SplitPipes(branch.length, monopodial, plan);
 }
 
-ChildPlan GrowthRule::PlanCantor(const Branch& branch,
-                                 std::span<const std::uint32_t> members) const {
-  ChildPlan plan;
+void GrowthRule::PlanCantor(const Branch& branch,
+                            std::span<const std::uint32_t> members,
+                            ChildPlan* plan) const {
   for (std::size_t i = 0; i < kPlainChildren; ++i) {
-    PlannedChild child;
+    PlannedChild& child = plan->children[plan->count++];
     child.index = i;
     float ratio = kCantorThird;
     if (breeds_) {
@@ -157,9 +162,7 @@ ChildPlan GrowthRule::PlanCantor(const Branch& branch,
     child.length = ratio * branch.length;
     child.deviation = kStraight;
     child.azimuth = kToTheRight;
-    plan.Add(child);
   }
-  return plan;
 }
 
 bool GrowthRule::LimitLength(const Branch& parent, PlannedChild* child) const {
@@ -201,40 +204,37 @@ void GrowthRule::Turn(const Branch& parent, const BranchDraws& draws,
   child->azimuth = turns_.Of(child->extension);
 }
 
-ChildPlan GrowthRule::PlanGenetic(
-    const Branch& branch, const BranchDraws& draws,
-    std::span<const std::uint32_t> members) const {
-  ChildPlan plan;
-  if (members.empty()) return plan;
+void GrowthRule::PlanGenetic(const Branch& branch, const BranchDraws& draws,
+                             std::span<const std::uint32_t> members,
+                             bool will_grow, ChildPlan* plan) const {
+  if (members.empty()) return;
   const std::size_t laterals = CountOf(branch.chromosome);
   const SiblingPlaces siblings =
       PlaceSiblings(branch.chromosome, members.first(laterals));
   for (std::size_t i = 0; i < siblings.count; ++i) {
     const SiblingPlace& place = siblings.places[i];
-    PlannedChild child;
-    child.index = i;
-    child.chromosome =
+    PlannedChild* child = &plan->children[plan->count];
+    child->index = i;
+    child->chromosome =
         WithCode(members[place.member], Gene::kSide, place.left ? 1 : 0);
-    child.flags = FlagsOf(child.chromosome);
-    child.position =
-        static_cast<float>(place.position) / float{kPositionCodeMax};
-    if (!LimitLength(branch, &child)) continue;
-    Turn(branch, draws, place.member, &child);
-    plan.Add(child);
+    child->flags = FlagsOf(child->chromosome);
+    child->position = positions_[place.position];
+    if (!LimitLength(branch, child)) continue;
+    if (will_grow) Turn(branch, draws, place.member, child);
+    ++plan->count;
   }
   if (members.size() > laterals) {
-    PlannedChild leader;
-    leader.index = siblings.count;
-    leader.chromosome = members[laterals];
-    leader.flags = FlagsOf(leader.chromosome) | kLeaderFlag;
-    leader.position = 1;
-    if (LimitLength(branch, &leader)) {
-      Turn(branch, draws, laterals, &leader);
-      plan.Add(leader);
+    PlannedChild* leader = &plan->children[plan->count];
+    leader->index = siblings.count;
+    leader->chromosome = members[laterals];
+    leader->flags = FlagsOf(leader->chromosome) | kLeaderFlag;
+    leader->position = 1;
+    if (LimitLength(branch, leader)) {
+      if (will_grow) Turn(branch, draws, laterals, leader);
+      ++plan->count;
     }
   }
-  SplitPipes(branch.length, IsMonopodial(branch.chromosome), &plan);
-  return plan;
+  SplitPipes(branch.length, IsMonopodial(branch.chromosome), plan);
 }
 
 }  // namespace terrane::core

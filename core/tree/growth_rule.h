@@ -47,16 +47,19 @@ class GrowthRule {
   // Children whose chromosomes a branch's plan needs.
   std::size_t MembersNeeded(std::uint32_t chromosome) const;
 
-  // `members` has MembersNeeded of them.
-  ChildPlan Plan(const Branch& branch, const BranchDraws& draws,
-                 std::span<const std::uint32_t> members) const;
+  // `members` has MembersNeeded of them. Children that will not grow are not
+  // turned: of them the plan says only how the parent's pipes split.
+  void Plan(const Branch& branch, const BranchDraws& draws,
+            std::span<const std::uint32_t> members, bool will_grow,
+            ChildPlan* plan) const;
 
  private:
-  ChildPlan PlanPlain(const Branch& branch) const;
-  ChildPlan PlanCantor(const Branch& branch,
-                       std::span<const std::uint32_t> members) const;
-  ChildPlan PlanGenetic(const Branch& branch, const BranchDraws& draws,
-                        std::span<const std::uint32_t> members) const;
+  void PlanPlain(const Branch& branch, ChildPlan* plan) const;
+  void PlanCantor(const Branch& branch, std::span<const std::uint32_t> members,
+                  ChildPlan* plan) const;
+  void PlanGenetic(const Branch& branch, const BranchDraws& draws,
+                   std::span<const std::uint32_t> members, bool will_grow,
+                   ChildPlan* plan) const;
   std::size_t CountOf(std::uint32_t chromosome) const;
   // Length and length code of a child at a position; false when its length is
   // 0.
@@ -69,9 +72,10 @@ class GrowthRule {
   bool breeds_;
   TurnTable turns_;
   // By code: lengths (ABSOLUTE), shares of the parent's (RELATIVE, Cantor),
-  // deviations.
+  // deviations, positions.
   std::array<float, kLengthCodeMax + 1> lengths_;
   std::array<SineCosine, kAngleCodeMax + 1> deviations_;
+  std::array<float, kPositionCodeMax + 1> positions_;
   SineCosine plain_deviation_;
   float crown_taper_;
   // Half the width of the azimuth's chance part, 2^32 to a turn.

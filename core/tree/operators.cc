@@ -7,6 +7,10 @@ namespace {
 
 constexpr std::uint32_t kEvenCoin = Threshold(0.5);
 
+// The two genes as bits.
+constexpr std::uint32_t kLengthAndSide =
+    1u << static_cast<int>(Gene::kLength) | 1u << static_cast<int>(Gene::kSide);
+
 }  // namespace
 
 Operators::Operators(const GeneticSpec& spec)
@@ -78,15 +82,21 @@ void Operators::Select(std::span<const std::uint32_t> population,
 }
 
 void Operators::Breed(const Survivors& survivors, std::uint32_t own,
-                      const BranchDraws& draws, std::size_t members,
-                      std::uint32_t* population) const {
+                      const BranchDraws& draws, GenesBred genes,
+                      std::size_t members, std::uint32_t* population) const {
+  const bool all = genes == GenesBred::kAll;
+  const std::uint32_t bred = all ? (1u << kGenes) - 1 : kLengthAndSide;
   std::array<std::uint32_t, kMostMembers> mutations;
-  BreedMembers({survivors.chromosomes.data(),
-                static_cast<std::uint32_t>(survivors.count), draws.key(),
-                crossover_, mutation_},
+  BreedMembers({.survivors = survivors.chromosomes.data(),
+                .survivor_count = static_cast<std::uint32_t>(survivors.count),
+                .key = draws.key(),
+                .all_genes = all,
+                .crossover = crossover_,
+                .mutation = mutation_},
                members, population, mutations.data());
   for (std::size_t member = 0; member < members; ++member) {
-    for (std::uint32_t left = mutations[member]; left != 0; left &= left - 1) {
+    for (std::uint32_t left = mutations[member] & bred; left != 0;
+         left &= left - 1) {
       population[member] =
           DrawnAnew(population[member], std::countr_zero(left), member, draws);
     }

@@ -42,6 +42,10 @@ struct Survivors {
   std::size_t count = 0;
 };
 
+// All genes of a chromosome, or only those of a child that its parent's own row
+// depends on: the others are left as the first parent's.
+enum class GenesBred { kAll, kLengthAndSide };
+
 class Operators {
  public:
   explicit Operators(const GeneticSpec& spec);
@@ -64,7 +68,7 @@ class Operators {
   // The first `members` of the population of the children of a branch whose
   // chromosome is `own`. `population` holds whole batches.
   void Breed(const Survivors& survivors, std::uint32_t own,
-             const BranchDraws& draws, std::size_t members,
+             const BranchDraws& draws, GenesBred genes, std::size_t members,
              std::uint32_t* population) const;
 
  private:

@@ -99,21 +99,25 @@ absl::Status TreeGenerator::Next(std::stop_token stop, SegmentBlock* block) {
 void TreeGenerator::Grow(SegmentBlock* block) {
   const Branch branch = *branches_.Front();
   branches_.Pop();
-  const ChildPlan plan = PlanChildren(branch);
+  PlanChildren(branch);
   ShapeBranch(branch, spec_.bending, &pieces_);
   const std::int64_t first_row = row_;
-  const bool whole = WriteRows(branch, plan, block);
+  const bool whole = WriteRows(branch, block);
   if (whole) {
-    if (generation_ < spec_.depth) QueueChildren(branch, plan, first_row);
+    if (generation_ < spec_.depth) QueueChildren(branch, first_row);
     if (--left_in_generation_ == 0) EndGeneration(block);
   }
   if (row_ == end_row_) done_ = true;
 }
 
-ChildPlan TreeGenerator::PlanChildren(const Branch& branch) {
+void TreeGenerator::PlanChildren(const Branch& branch) {
   const GrowthRule& rule = tree_->rule();
   const BranchDraws draws(branch.key);
-  if (!rule.Breeds()) return rule.Plan(branch, draws, {});
+  const bool will_grow = generation_ < spec_.depth;
+  if (!rule.Breeds()) {
+    rule.Plan(branch, draws, {}, will_grow, &plan_);
+    return;
+  }
   const Operators& operators = tree_->operators();
   if (branch.opens_family) {
     operators.Select({populations_.Front(), operators.population()},
@@ -121,20 +125,18 @@ ChildPlan TreeGenerator::PlanChildren(const Branch& branch) {
     populations_.Pop();
   }
   const std::size_t needed = rule.MembersNeeded(branch.chromosome);
-  // The last generation's children have no children of their own.
-  const std::size_t members = generation_ < spec_.depth
-                                  ? std::max(needed, operators.population())
-                                  : needed;
-  operators.Breed(survivors_, branch.chromosome, draws, members,
-                  members_.data());
-  return rule.Plan(branch, draws, {members_.data(), needed});
+  const std::size_t members =
+      will_grow ? std::max(needed, operators.population()) : needed;
+  operators.Breed(survivors_, branch.chromosome, draws,
+                  will_grow ? GenesBred::kAll : GenesBred::kLengthAndSide,
+                  members, members_.data());
+  rule.Plan(branch, draws, {members_.data(), needed}, will_grow, &plan_);
 }
 
-bool TreeGenerator::WriteRows(const Branch& branch, const ChildPlan& plan,
-                              SegmentBlock* block) {
+bool TreeGenerator::WriteRows(const Branch& branch, SegmentBlock* block) {
   const bool is_solid = spec_.dimensions == 3;
   const float base = RadiusOfPipes(branch.pipes);
-  const float tip = RadiusOfPipes(branch.pipes * plan.tip_pipes);
+  const float tip = RadiusOfPipes(branch.pipes * plan_.tip_pipes);
   const auto count = static_cast<float>(pieces_.count);
   for (std::size_t k = 0; k < pieces_.count; ++k) {
     if (row_ == end_row_) return false;
@@ -157,7 +159,7 @@ bool TreeGenerator::WriteRows(const Branch& branch, const ChildPlan& plan,
                 : base + (tip - base) * (static_cast<float>(k + 1) / count);
     block->flags[at] = static_cast<std::uint8_t>(
         branch.flags | (is_last ? 0 : kContinuedFlag) |
-        (plan.count == 0 ? kTerminalFlag : 0));
+        (plan_.count == 0 ? kTerminalFlag : 0));
     block->attach[at] = k == 0 ? branch.attach : 1.0f;
     block->chromosome[at] = branch.chromosome;
     if (is_solid) block->extension[at] = branch.extension;
@@ -165,10 +167,10 @@ bool TreeGenerator::WriteRows(const Branch& branch, const ChildPlan& plan,
   return true;
 }
 
-void TreeGenerator::QueueChildren(const Branch& branch, const ChildPlan& plan,
+void TreeGenerator::QueueChildren(const Branch& branch,
                                   std::int64_t first_row) {
-  for (std::size_t i = 0; i < plan.count; ++i) {
-    const PlannedChild& planned = plan.children[i];
+  for (std::size_t i = 0; i < plan_.count; ++i) {
+    const PlannedChild& planned = plan_.children[i];
     const Pieces::Place place = pieces_.At(planned.position);
     Branch* child = branches_.Push();
     child->key = ChildKey(branch.key, planned.index);
@@ -185,7 +187,7 @@ void TreeGenerator::QueueChildren(const Branch& branch, const ChildPlan& plan,
     child->flags = planned.flags;
     child->opens_family = i == 0;
   }
-  if (plan.count > 0 && tree_->rule().Breeds()) {
+  if (plan_.count > 0 && tree_->rule().Breeds()) {
     std::copy_n(members_.begin(), tree_->operators().padded_population(),
                 populations_.Push());
   }

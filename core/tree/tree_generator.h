@@ -58,12 +58,11 @@ class TreeGenerator {
 
  private:
   void Grow(SegmentBlock* block);
-  ChildPlan PlanChildren(const Branch& branch);
+  // Breeds the children of a branch, or only what its own row takes of them.
+  void PlanChildren(const Branch& branch);
   // False when max_segments cuts the branch short.
-  bool WriteRows(const Branch& branch, const ChildPlan& plan,
-                 SegmentBlock* block);
-  void QueueChildren(const Branch& branch, const ChildPlan& plan,
-                     std::int64_t first_row);
+  bool WriteRows(const Branch& branch, SegmentBlock* block);
+  void QueueChildren(const Branch& branch, std::int64_t first_row);
   void EndGeneration(SegmentBlock* block);
   float RadiusOfPipes(float pipes) const;
 
@@ -85,6 +84,7 @@ class TreeGenerator {
   // Of the family and the branch in hand.
   Survivors survivors_;
   std::array<std::uint32_t, kMostMembers> members_;
+  ChildPlan plan_;
   Pieces pieces_;
 };
 
