@@ -1,5 +1,5 @@
-// What validators of specs share: field paths that are spelled only when
-// something is wrong, ranges that print themselves, and the checks on them.
+// What every validator shares: field paths that are spelled only when something
+// is wrong, ranges that print themselves, and the checks on them.
 //
 // A check adds a violation and returns false when the value is out of range;
 // NaN is in no range. Safe from any thread; a Violations object belongs to one.

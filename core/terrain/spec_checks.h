@@ -1,10 +1,11 @@
 // What the validators of a TerrainSpec share beyond core/base/field_checks.h:
-// ranges of terrains, and the counts that a whole recipe is held to.
+// ranges, and checks on points and lists of vertices.
+//
+// Safe from any thread; a Violations object belongs to one.
 #ifndef TERRANE_CORE_TERRAIN_SPEC_CHECKS_H_
 #define TERRANE_CORE_TERRAIN_SPEC_CHECKS_H_
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "core/base/field_checks.h"
@@ -22,7 +23,7 @@ inline constexpr Range kLengths{0, 1e12, true, false};
 inline constexpr Range kFidelities{0, 1e12};
 inline constexpr Range kRoughnesses{0, 1, true, true};
 
-// One validation of a TerrainSpec in progress.
+// One validation in progress.
 class SpecChecks : public FieldChecks {
  public:
   SpecChecks(const SpecLimits& limits, int dimensions, Violations* violations)

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/base/vec3.h"
+#include "core/mesh/float3.h"
 #include "core/tree/chromosome.h"
 #include "core/tree/turn_table.h"
 
@@ -15,13 +15,13 @@ namespace terrane::core {
 
 // A direction with a right-hand side: unit vectors at a right angle.
 struct Pose {
-  Vec3 direction;
-  Vec3 right;
+  Float3 direction;
+  Float3 right;
 };
 
 struct Branch {
   std::uint64_t key = 0;
-  Vec3 start;
+  Float3 start;
   Pose pose;
   float length = 0;
   // radius^Delta at the base, as a share of the trunk's.

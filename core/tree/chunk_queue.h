@@ -22,7 +22,13 @@ class ChunkQueue {
   explicit ChunkQueue(std::size_t elements_of_run)
       : elements_of_run_(elements_of_run) {}
 
+  // Runs that wait.
   std::size_t size() const { return size_; }
+  // Bytes of all chunks.
+  std::size_t bytes() const {
+    const std::size_t chunks = chunks_.size() + (spare_ != nullptr ? 1 : 0);
+    return chunks * kRunsOfChunk * elements_of_run_ * sizeof(Element);
+  }
 
   // Space for a new last run, for the caller to fill.
   Element* Push() {

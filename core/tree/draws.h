@@ -27,6 +27,9 @@ constexpr std::uint64_t ChildKey(std::uint64_t parent_key, std::size_t child) {
   return Mix64(parent_key + 0x9E3779B97F4A7C15ull * (child + 1));
 }
 
+// The golden angle, 137.5 degrees, 2^32 to a turn.
+inline constexpr std::uint32_t kGoldenTurn = 1640531527u;
+
 // Words that one member of a population may draw, and members of the largest.
 inline constexpr std::uint32_t kWordsOfMember = 32;
 inline constexpr std::size_t kMostMembers = 64;

@@ -58,8 +58,8 @@ TreeEstimate EstimateTree(const TreeSpec& spec) {
   std::int64_t rows = Times(branches, spec.bending.pieces);
   if (spec.max_segments > 0) {
     rows = std::min(rows, spec.max_segments);
-    // The cut tree's queue holds no more branches than the rows' children.
-    generation = std::min(generation, Times(rows, MostChildren(spec)));
+    // No branch is queued that no row is left for, but for one's siblings.
+    generation = std::min(generation, Plus(rows, MostChildren(spec)));
   }
   estimate.segments_most = rows;
   estimate.bytes_most = Times(rows, SegmentBytes(spec.dimensions));

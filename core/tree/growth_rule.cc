@@ -10,8 +10,6 @@
 namespace terrane::core {
 namespace {
 
-// The golden angle, 137.5 degrees, 2^32 to a turn.
-constexpr std::uint32_t kGoldenTurn = 1640531527u;
 constexpr double kTurn = 4294967296.0;
 constexpr float kCantorThird = 1.0f / 3.0f;
 constexpr std::size_t kPlainChildren = 2;
@@ -85,7 +83,7 @@ Branch GrowthRule::Trunk() const {
   const bool lies = spec_.form == TreeForm::kCantor;
   Branch trunk;
   trunk.key = TrunkKey(spec_.seed);
-  trunk.pose = lies ? Pose{{1, 0, 0}, {0, 1, 0}} : Pose{{0, 1, 0}, {1, 0, 0}};
+  trunk.pose = lies ? Pose{{1, 0, 0}, {0, 0, -1}} : Pose{{0, 0, 1}, {1, 0, 0}};
   trunk.length = static_cast<float>(spec_.trunk_length);
   trunk.pipes = lies ? 0 : 1;
   trunk.parent_row = kNoParent;

@@ -8,10 +8,10 @@ namespace {
 
 // Raises the direction, or lowers it where `lift` is negative.
 Pose Lifted(const Pose& pose, float lift) {
-  const Vec3 d = pose.direction;
-  const float level = std::sqrt(d.x * d.x + d.z * d.z);
-  const Vec3 direction = Normalized(d + lift * level * Vec3{0, 1, 0});
-  const Vec3 right = pose.right - Dot(pose.right, direction) * direction;
+  const Float3 d = pose.direction;
+  const float level = std::sqrt(d.x * d.x + d.y * d.y);
+  const Float3 direction = Normalized(d + lift * level * Float3{0, 0, 1});
+  const Float3 right = pose.right - Dot(pose.right, direction) * direction;
   return {direction, Normalized(right)};
 }
 
@@ -24,8 +24,8 @@ Pieces::Place Pieces::At(float position) const {
   return {piece, scaled - static_cast<float>(piece)};
 }
 
-Vec3 Pieces::Point(const Place& place) const {
-  const Vec3 start = points[place.piece];
+Float3 Pieces::Point(const Place& place) const {
+  const Float3 start = points[place.piece];
   return start + place.along * (points[place.piece + 1] - start);
 }
 
@@ -50,11 +50,11 @@ void ShapeBranch(const Branch& branch, const BendingSpec& bending,
 }
 
 Pose Deviate(const Pose& pose, SineCosine deviation, SineCosine azimuth) {
-  const Vec3 front = Cross(pose.direction, pose.right);
+  const Float3 front = Cross(pose.direction, pose.right);
   // Unit vectors across the parent: in the plane of the turn, and its axis.
-  const Vec3 across = azimuth.cosine * pose.right + azimuth.sine * front;
-  const Vec3 axis = azimuth.cosine * front - azimuth.sine * pose.right;
-  const Vec3 turned =
+  const Float3 across = azimuth.cosine * pose.right + azimuth.sine * front;
+  const Float3 axis = azimuth.cosine * front - azimuth.sine * pose.right;
+  const Float3 turned =
       deviation.cosine * across - deviation.sine * pose.direction;
   return {deviation.cosine * pose.direction + deviation.sine * across,
           azimuth.cosine * turned - azimuth.sine * axis};

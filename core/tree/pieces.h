@@ -20,7 +20,7 @@ namespace terrane::core {
 struct Pieces {
   std::size_t count = 0;
   // Piece k runs from points[k] to points[k + 1] in the direction of poses[k].
-  std::array<Vec3, kMaxPieces + 1> points;
+  std::array<Float3, kMaxPieces + 1> points;
   std::array<Pose, kMaxPieces> poses;
 
   // A position along the whole branch as a piece and a position along it.
@@ -29,7 +29,7 @@ struct Pieces {
     float along = 0;
   };
   Place At(float position) const;
-  Vec3 Point(const Place& place) const;
+  Float3 Point(const Place& place) const;
 };
 
 void ShapeBranch(const Branch& branch, const BendingSpec& bending,

@@ -6,7 +6,7 @@
 // the rows is a tree. Columns are little-endian bytes on the wire:
 //   parent u32 | start 3 f32 | end 3 f32 | radius start f32 | radius end f32 |
 //   flags u8 | attach f32 | chromosome u32 | extension u32 (3-D only)
-// Lengths are in the spec's unit, y is up. Plain data; belongs to one thread.
+// Lengths are in the spec's unit, z is up. Plain data; belongs to one thread.
 #ifndef TERRANE_CORE_TREE_SEGMENT_BLOCK_H_
 #define TERRANE_CORE_TREE_SEGMENT_BLOCK_H_
 
@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/base/vec3.h"
+#include "core/mesh/mesh.h"
 
 namespace terrane::core {
 
@@ -45,8 +45,8 @@ struct SegmentBlock {
   int first_generation = 0;
 
   std::vector<std::uint32_t> parent;
-  std::vector<Vec3> start;
-  std::vector<Vec3> end;
+  std::vector<Float3> start;
+  std::vector<Float3> end;
   std::vector<float> radius_start;
   std::vector<float> radius_end;
   std::vector<std::uint8_t> flags;
@@ -61,6 +61,28 @@ struct SegmentBlock {
   std::vector<GenerationMark> marks;
 
   std::size_t rows() const { return parent.size(); }
+};
+
+// The generations of a block's rows, one after the other.
+class GenerationWalk {
+ public:
+  explicit GenerationWalk(const SegmentBlock& block)
+      : block_(block), generation_(block.first_generation) {}
+
+  // Of the row with this index in the block; indices do not fall from call to
+  // call.
+  int At(std::size_t index) {
+    const auto row = block_.first_row + static_cast<std::int64_t>(index);
+    while (next_ < block_.marks.size() && row >= block_.marks[next_].end_row) {
+      generation_ = block_.marks[next_++].generation + 1;
+    }
+    return generation_;
+  }
+
+ private:
+  const SegmentBlock& block_;
+  int generation_;
+  std::size_t next_ = 0;
 };
 
 // Bytes of a row in all columns.

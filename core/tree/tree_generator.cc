@@ -99,21 +99,32 @@ absl::Status TreeGenerator::Next(std::stop_token stop, SegmentBlock* block) {
 void TreeGenerator::Grow(SegmentBlock* block) {
   const Branch branch = *branches_.Front();
   branches_.Pop();
-  PlanChildren(branch);
+  const bool will_grow = WillGrow();
+  PlanChildren(branch, will_grow);
   ShapeBranch(branch, spec_.bending, &pieces_);
   const std::int64_t first_row = row_;
   const bool whole = WriteRows(branch, block);
   if (whole) {
-    if (generation_ < spec_.depth) QueueChildren(branch, first_row);
+    if (will_grow) {
+      QueueChildren(branch, first_row);
+    } else {
+      next_is_partial_ = true;
+    }
     if (--left_in_generation_ == 0) EndGeneration(block);
   }
   if (row_ == end_row_) done_ = true;
 }
 
-void TreeGenerator::PlanChildren(const Branch& branch) {
+bool TreeGenerator::WillGrow() const {
+  return generation_ < spec_.depth &&
+         row_ + spec_.bending.pieces +
+                 static_cast<std::int64_t>(branches_.size()) <
+             end_row_;
+}
+
+void TreeGenerator::PlanChildren(const Branch& branch, bool will_grow) {
   const GrowthRule& rule = tree_->rule();
   const BranchDraws draws(branch.key);
-  const bool will_grow = generation_ < spec_.depth;
   if (!rule.Breeds()) {
     rule.Plan(branch, draws, {}, will_grow, &plan_);
     return;
@@ -194,7 +205,10 @@ void TreeGenerator::QueueChildren(const Branch& branch,
 }
 
 void TreeGenerator::EndGeneration(SegmentBlock* block) {
-  if (row_ > from_row_) block->marks.push_back({generation_, row_});
+  if (row_ > from_row_ && !is_partial_) {
+    block->marks.push_back({generation_, row_});
+  }
+  is_partial_ = std::exchange(next_is_partial_, false);
   ++generation_;
   left_in_generation_ = branches_.size();
   if (left_in_generation_ == 0) done_ = true;

@@ -7,8 +7,8 @@
 // never ends; here such a branch is not grown at all.
 //
 // Memory: the branches that wait, at most the largest generation, with one
-// population for each family: QueueBytesOfBranch each, about 0.1 KB (10^6
-// segments: at most 70 MB). Nothing of what has been given is kept.
+// population for each family: at most QueueBytesOfBranch each, some 0.1 KB, and
+// a few chunks. Nothing of what has been given is kept.
 // Threads: a generator belongs to one thread; the Tree it grows is shared.
 // Errors: see Next. Determinism: see core/tree/tree.h.
 #ifndef TERRANE_CORE_TREE_TREE_GENERATOR_H_
@@ -49,6 +49,11 @@ class TreeGenerator {
   // Whether all rows have been given.
   bool Done() const { return done_; }
 
+  // Bytes that the queue has now.
+  std::int64_t QueueBytes() const {
+    return static_cast<std::int64_t>(branches_.bytes() + populations_.bytes());
+  }
+
   // Replaces `block` by the next rows: none when the tree is done. A block
   // never parts the pieces of a branch, unless from_row or max_segments does.
   // Errors: CANCELLED when `stop` was asked to, polled at least every
@@ -58,8 +63,10 @@ class TreeGenerator {
 
  private:
   void Grow(SegmentBlock* block);
+  // Whether the children of the branch in hand will be reached.
+  bool WillGrow() const;
   // Breeds the children of a branch, or only what its own row takes of them.
-  void PlanChildren(const Branch& branch);
+  void PlanChildren(const Branch& branch, bool will_grow);
   // False when max_segments cuts the branch short.
   bool WriteRows(const Branch& branch, SegmentBlock* block);
   void QueueChildren(const Branch& branch, std::int64_t first_row);
@@ -80,6 +87,10 @@ class TreeGenerator {
   int generation_ = 0;
   std::size_t left_in_generation_ = 1;
   std::int64_t row_ = 0;
+  // max_segments: branches that no row is left for are not queued, so a
+  // generation may be queued in part.
+  bool is_partial_ = false;
+  bool next_is_partial_ = false;
 
   // Of the family and the branch in hand.
   Survivors survivors_;

@@ -2,8 +2,8 @@
 //
 // A spec is only data: ValidateTreeSpec (core/tree/validate.h) says what is
 // wrong with it, Tree::Create refuses one that is not valid. Lengths are in the
-// unit of `trunk_length`; y is up, and a tree of 2 dimensions lies in z = 0
-// with right along +x. Angles are in degrees.
+// unit of `trunk_length`, angles in degrees. z is up; a tree of 2 dimensions
+// lies in y = 0 with right along +x (the paper's y is our z).
 //
 // Source: Wu & Zhou, "Research on 2D fractal recursive algorithm syncretized
 // genetic operation", Journal of Image and Graphics 13(8), 2008.
