@@ -18,6 +18,9 @@ namespace terrane::core {
 
 // Members are made in batches: arrays of members hold whole batches.
 inline constexpr std::size_t kMemberBatch = 8;
+constexpr std::size_t WholeBatches(std::size_t members) {
+  return (members + kMemberBatch - 1) / kMemberBatch * kMemberBatch;
+}
 
 inline constexpr int kNicheFitness = 5;
 inline constexpr int kNicheDistance = 4;

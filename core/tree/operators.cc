@@ -63,9 +63,9 @@ void Operators::Select(std::span<const std::uint32_t> population,
       CrowdedOut(population.data(), fitness.data(), population.size());
   survivors->count = 0;
   for (std::size_t i = 0; i < population.size(); ++i) {
-    if ((crowded_out >> i & 1) == 0) {
-      survivors->chromosomes[survivors->count++] = population[i];
-    }
+    // Without a branch, for it would go either way.
+    survivors->chromosomes[survivors->count] = population[i];
+    survivors->count += 1 - (crowded_out >> i & 1);
   }
   if (survivors->count >= kLeastSurvivors) return;
   // Only the fittest is left (nobody crowds it out); the fittest of the others

@@ -52,9 +52,7 @@ class Operators {
 
   std::size_t population() const { return population_; }
   // The same in whole batches: what an array of a population must hold.
-  std::size_t padded_population() const {
-    return (population_ + kMemberBatch - 1) / kMemberBatch * kMemberBatch;
-  }
+  std::size_t padded_population() const { return WholeBatches(population_); }
 
   // Copies of the trunk with each gene drawn anew by an even coin; axis and
   // side always.

@@ -21,7 +21,7 @@ namespace terrane::core {
 namespace {
 
 constexpr std::int64_t kRows = 300'000;
-constexpr std::int64_t kVertexBytes = 32;
+constexpr double kVertexBytes = 32;
 
 // Nanoseconds to copy a byte of a block of the size that is streamed: the best
 // of many.
@@ -42,14 +42,29 @@ double NanosecondsOfByte() {
   return best;
 }
 
-// Counts items of so many bytes, and holds the time against the yardstick.
-void Report(benchmark::State& state, std::int64_t items, double bytes,
-            double nanoseconds_of_byte) {
-  state.SetItemsProcessed(items);
-  state.counters["times_bound"] = benchmark::Counter(
-      static_cast<double>(items) * bytes * nanoseconds_of_byte * 1e-9,
-      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-}
+// Counts items of so many bytes and holds the time that they take against the
+// yardstick.
+class Meter {
+ public:
+  Meter(double bytes, double nanoseconds_of_byte)
+      : bound_(bytes * nanoseconds_of_byte) {}
+
+  void Add(std::size_t items) { items_ += static_cast<std::int64_t>(items); }
+
+  void Report(benchmark::State& state) const {
+    const std::chrono::duration<double, std::nano> spent =
+        std::chrono::steady_clock::now() - start_;
+    state.SetItemsProcessed(items_);
+    state.counters["times_bound"] =
+        spent.count() / (static_cast<double>(items_) * bound_);
+  }
+
+ private:
+  const double bound_;
+  const std::chrono::steady_clock::time_point start_ =
+      std::chrono::steady_clock::now();
+  std::int64_t items_ = 0;
+};
 
 std::shared_ptr<const Tree> Make(benchmark::State& state, TreeSpec spec) {
   auto tree = Tree::Create(spec);
@@ -60,19 +75,18 @@ std::shared_ptr<const Tree> Make(benchmark::State& state, TreeSpec spec) {
 
 void Segments(benchmark::State& state, const TreeSpec& spec, double of_byte) {
   const auto tree = Make(state, spec);
-  std::int64_t rows = 0;
   SegmentBlock block;
+  Meter meter(static_cast<double>(SegmentBytes(spec.dimensions)), of_byte);
   for (auto _ : state) {
     TreeGenerator generator(tree);
     while (!generator.Done()) {
       const absl::Status status = generator.Next({}, &block);
       if (!status.ok()) state.SkipWithError(status.ToString().c_str());
       benchmark::DoNotOptimize(block.end.data());
-      rows += static_cast<std::int64_t>(block.rows());
+      meter.Add(block.rows());
     }
   }
-  Report(state, rows, static_cast<double>(SegmentBytes(spec.dimensions)),
-         of_byte);
+  meter.Report(state);
 }
 
 // From the recipe to the first block.
@@ -95,18 +109,18 @@ void Vertices(benchmark::State& state, TreeSpec spec, const TubeSpec& tubes,
   const absl::Status grown = generator.Next({}, &block);
   const auto mesher = TreeMesher::Create(tubes);
   if (!grown.ok() || !mesher.ok()) state.SkipWithError("no tree to mesh");
-  std::int64_t vertices = 0;
   Mesh mesh;
+  Meter meter(kVertexBytes, of_byte);
   for (auto _ : state) {
     for (std::size_t next = 0; next < block.rows();) {
       const absl::Status status =
           mesher->Next(block, {}, TreeMesher::kBlockVertices, &next, &mesh);
       if (!status.ok()) state.SkipWithError(status.ToString().c_str());
       benchmark::DoNotOptimize(mesh.positions.data());
-      vertices += static_cast<std::int64_t>(mesh.positions.size());
+      meter.Add(mesh.positions.size());
     }
   }
-  Report(state, vertices, kVertexBytes, of_byte);
+  meter.Report(state);
 }
 
 // --- The list ---------------------------------------------------------------
