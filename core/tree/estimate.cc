@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/mesh/segment_block.h"
 #include "core/tree/chromosome.h"
-#include "core/tree/segment_block.h"
 #include "core/tree/tree_generator.h"
 
 namespace terrane::core {

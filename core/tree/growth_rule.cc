@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "core/mesh/segment_block.h"
 #include "core/tree/estimate.h"
 #include "core/tree/genetic_kernels.h"
-#include "core/tree/segment_block.h"
 #include "core/tree/siblings.h"
 
 namespace terrane::core {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/mesh/mesh.h"
-#include "core/tree/segment_block.h"
+#include "core/mesh/segment_block.h"
 #include "core/tree/tree_spec.h"
 
 namespace terrane::core {

@@ -21,11 +21,11 @@
 #include <stop_token>
 
 #include "absl/status/status.h"
+#include "core/mesh/segment_block.h"
 #include "core/tree/branch.h"
 #include "core/tree/chunk_queue.h"
 #include "core/tree/operators.h"
 #include "core/tree/pieces.h"
-#include "core/tree/segment_block.h"
 #include "core/tree/tree.h"
 
 namespace terrane::core {

@@ -27,7 +27,7 @@
 #include "absl/status/statusor.h"
 #include "core/base/violations.h"
 #include "core/mesh/mesh.h"
-#include "core/tree/segment_block.h"
+#include "core/mesh/segment_block.h"
 #include "core/tree/turn_table.h"
 
 namespace terrane::core {

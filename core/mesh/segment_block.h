@@ -1,5 +1,6 @@
 // SegmentBlock: rows of a tree's skeleton as columns, a run of the stream.
 //
+// Shared by the generator that makes them and the codecs that write them.
 // A row is a segment: one branch, or one piece of a branch that bends. Rows
 // come breadth-first, so a parent's index is below its children's and a
 // generation is a range of rows; a mark closes each generation. Every prefix of
@@ -7,8 +8,8 @@
 //   parent u32 | start 3 f32 | end 3 f32 | radius start f32 | radius end f32 |
 //   flags u8 | attach f32 | chromosome u32 | extension u32 (3-D only)
 // Lengths are in the spec's unit, z is up. Plain data; belongs to one thread.
-#ifndef TERRANE_CORE_TREE_SEGMENT_BLOCK_H_
-#define TERRANE_CORE_TREE_SEGMENT_BLOCK_H_
+#ifndef TERRANE_CORE_MESH_SEGMENT_BLOCK_H_
+#define TERRANE_CORE_MESH_SEGMENT_BLOCK_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -92,4 +93,4 @@ constexpr std::int64_t SegmentBytes(int dimensions) {
 
 }  // namespace terrane::core
 
-#endif  // TERRANE_CORE_TREE_SEGMENT_BLOCK_H_
+#endif  // TERRANE_CORE_MESH_SEGMENT_BLOCK_H_
