@@ -4,11 +4,15 @@
 #include <limits>
 
 #include "core/mesh/segment_block.h"
+#include "core/tree/branch.h"
 #include "core/tree/chromosome.h"
-#include "core/tree/tree_generator.h"
+#include "core/tree/genetic_kernels.h"
 
 namespace terrane::core {
 namespace {
+
+// A ratio of close to a third, the strict one.
+constexpr std::uint32_t kCantorTrunkLength = 15;
 
 constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
 
@@ -27,7 +31,7 @@ int LastGeneration(const TreeSpec& spec) {
     return spec.depth;
   }
   int generation = 0;
-  std::uint32_t code = CodeOf(TrunkChromosome(spec.genetic), Gene::kLength);
+  std::uint32_t code = CodeOf(TrunkChromosome(spec), Gene::kLength);
   while (generation < spec.depth && LargestChildLength(code) > 0) {
     code = LargestChildLength(code);
     ++generation;
@@ -37,8 +41,21 @@ int LastGeneration(const TreeSpec& spec) {
 
 }  // namespace
 
-std::uint32_t TrunkChromosome(const GeneticSpec& genetic) {
-  return genetic.trunk.value_or(DefaultTrunk(genetic.monopodial_share > 0));
+std::uint32_t TrunkChromosome(const TreeSpec& spec) {
+  if (spec.genetic.trunk.has_value()) return *spec.genetic.trunk;
+  const std::uint32_t trunk = DefaultTrunk(spec.genetic.monopodial_share > 0);
+  return spec.form == TreeForm::kCantor
+             ? WithCode(trunk, Gene::kLength, kCantorTrunkLength)
+             : trunk;
+}
+
+std::int64_t QueueBytesOfBranch(const TreeSpec& spec) {
+  const std::size_t members =
+      spec.form == TreeForm::kPlain
+          ? 0
+          : WholeBatches(static_cast<std::size_t>(spec.genetic.population));
+  return static_cast<std::int64_t>(sizeof(Branch) +
+                                   members * sizeof(std::uint32_t));
 }
 
 int MostChildren(const TreeSpec& spec) {

@@ -29,8 +29,11 @@ TreeEstimate EstimateTree(const TreeSpec& spec);
 // Children that a branch has at most.
 int MostChildren(const TreeSpec& spec);
 
+// Bytes of the generator's queue for each branch that waits in it.
+std::int64_t QueueBytesOfBranch(const TreeSpec& spec);
+
 // The chromosome that the trunk has.
-std::uint32_t TrunkChromosome(const GeneticSpec& genetic);
+std::uint32_t TrunkChromosome(const TreeSpec& spec);
 
 // The largest length code of a child: floor(0.7 * code).
 constexpr std::uint32_t LargestChildLength(std::uint32_t code) {

@@ -52,7 +52,7 @@ void SplitPipes(float length, bool monopodial, ChildPlan* plan) {
 
 GrowthRule::GrowthRule(const TreeSpec& spec)
     : spec_(spec),
-      trunk_chromosome_(TrunkChromosome(spec.genetic)),
+      trunk_chromosome_(TrunkChromosome(spec)),
       breeds_(spec.form == TreeForm::kGenetic ||
               (spec.form == TreeForm::kCantor && spec.cantor.statistical)),
       plain_deviation_(SineCosineOfDegrees(spec.plain.angle_deg)),

@@ -75,8 +75,8 @@ class LeafPlacer {
 
 }  // namespace
 
-void PlaceLeaves(const TreeSpec& spec, const SegmentBlock& block,
-                 LeafBlock* leaves) {
+absl::Status PlaceLeaves(const TreeSpec& spec, const SegmentBlock& block,
+                         std::stop_token stop, LeafBlock* leaves) {
   leaves->row.clear();
   leaves->position.clear();
   leaves->direction.clear();
@@ -89,9 +89,13 @@ void PlaceLeaves(const TreeSpec& spec, const SegmentBlock& block,
     const std::uint8_t flags = block.flags[i];
     const bool ends = generation == spec.depth || (flags & kTerminalFlag) != 0;
     if (!ends || (flags & kContinuedFlag) != 0) continue;
+    if (stop.stop_requested()) {
+      return absl::CancelledError("placing of leaves stopped");
+    }
     placer.Place(block.first_row + static_cast<std::int64_t>(i), block.start[i],
                  block.end[i]);
   }
+  return absl::OkStatus();
 }
 
 }  // namespace terrane::core

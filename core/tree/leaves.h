@@ -11,8 +11,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/segment_block.h"
 #include "core/tree/tree_spec.h"
@@ -31,8 +33,9 @@ struct LeafBlock {
 };
 
 // Replaces `leaves` by those of a block's rows. `spec.leaves` must be set.
-void PlaceLeaves(const TreeSpec& spec, const SegmentBlock& block,
-                 LeafBlock* leaves);
+// Errors: CANCELLED when `stop` was asked to, polled at every tip.
+absl::Status PlaceLeaves(const TreeSpec& spec, const SegmentBlock& block,
+                         std::stop_token stop, LeafBlock* leaves);
 
 }  // namespace terrane::core
 

@@ -49,14 +49,6 @@ void Clear(SegmentBlock* block) {
 
 }  // namespace
 
-std::int64_t QueueBytesOfBranch(const TreeSpec& spec) {
-  const std::size_t population =
-      spec.form == TreeForm::kPlain
-          ? 0
-          : Operators(spec.genetic).padded_population() * sizeof(std::uint32_t);
-  return static_cast<std::int64_t>(sizeof(Branch) + population);
-}
-
 TreeGenerator::TreeGenerator(std::shared_ptr<const Tree> tree,
                              std::int64_t from_row, BlockSizes sizes)
     : tree_(std::move(tree)),

@@ -7,8 +7,8 @@
 // never ends; here such a branch is not grown at all.
 //
 // Memory: the branches that wait, at most the largest generation, with one
-// population for each family: at most QueueBytesOfBranch each, some 0.1 KB, and
-// a few chunks. Nothing of what has been given is kept.
+// population for each family: at most QueueBytesOfBranch (core/tree/estimate.h)
+// each, some 0.1 KB, and a few chunks. Nothing of what has been given is kept.
 // Threads: a generator belongs to one thread; the Tree it grows is shared.
 // Errors: see Next. Determinism: see core/tree/tree.h.
 #ifndef TERRANE_CORE_TREE_TREE_GENERATOR_H_
@@ -29,9 +29,6 @@
 #include "core/tree/tree.h"
 
 namespace terrane::core {
-
-// Bytes of the queue for each branch that waits in it.
-std::int64_t QueueBytesOfBranch(const TreeSpec& spec);
 
 // The largest block stays under 1 MiB in bytes.
 struct BlockSizes {
@@ -57,8 +54,9 @@ class TreeGenerator {
   // Replaces `block` by the next rows: none when the tree is done. A block
   // never parts the pieces of a branch, unless from_row or max_segments does.
   // Errors: CANCELLED when `stop` was asked to, polled at least every
-  // millisecond (the generator may then go on); INVALID_ARGUMENT naming
-  // "from_row" when the tree has fewer rows.
+  // millisecond; the block then holds the rows up to there, and another call
+  // goes on behind them. INVALID_ARGUMENT naming "from_row" when the tree has
+  // fewer rows.
   absl::Status Next(std::stop_token stop, SegmentBlock* block);
 
  private:

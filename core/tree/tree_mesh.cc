@@ -11,8 +11,6 @@
 namespace terrane::core {
 namespace {
 
-constexpr std::size_t kBranchesOfPoll = 64;
-
 // A number of generation 0 as it is in generation g: 0.7^g times, rounded down
 // generation by generation.
 int Reduced(int number, int generation, int least) {
@@ -223,8 +221,8 @@ absl::Status TreeMesher::Next(const SegmentBlock& block, std::stop_token stop,
   mesh->indices.clear();
   Writer writer(block, spec_, mesh);
   GenerationWalk generations(block);
-  for (std::size_t branches = 0; *next < block.rows(); ++branches) {
-    if (branches % kBranchesOfPoll == 0 && stop.stop_requested()) {
+  while (*next < block.rows()) {
+    if (stop.stop_requested()) {
       return absl::CancelledError("meshing stopped");
     }
     const int generation = generations.At(*next);

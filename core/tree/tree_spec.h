@@ -33,7 +33,8 @@ enum class Wanted { kAny, kLow, kHigh };
 struct GeneticSpec {
   // The trunk's chromosome (core/tree/chromosome.h): length code 31, angle 0,
   // three children at 30, 42 and 56 of 63, right, and monopodial unless
-  // monopodial_share is 0.
+  // monopodial_share is 0. A Cantor set's has length code 15, a ratio of close
+  // to 1/3.
   std::optional<std::uint32_t> trunk;
 
   // Requested shares of branches that are monopodial and that are left, [0, 1].

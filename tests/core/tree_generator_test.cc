@@ -401,6 +401,10 @@ TEST(Blocks, AStopIsHeardBetweenFewBranches) {
   EXPECT_EQ(generator.Next(source.get_token(), &block).code(),
             absl::StatusCode::kCancelled);
   EXPECT_LE(block.rows(), 128u);
+  // Another call goes on behind what there is.
+  SegmentBlock rest;
+  ASSERT_TRUE(generator.Next({}, &rest).ok());
+  EXPECT_EQ(rest.first_row, static_cast<std::int64_t>(block.rows()));
   // Also while rows are only skipped.
   TreeGenerator resumed(*tree, 100'000'000);
   EXPECT_EQ(resumed.Next(source.get_token(), &block).code(),

@@ -197,7 +197,7 @@ TEST(Leaves, SitOnTheTipsWithTheirSizes) {
   spec.leaves = LeafSpec{.count = 4, .size_share = 0.5, .size_variation = 0.2};
   const SegmentBlock tree = Grow(spec);
   LeafBlock leaves;
-  PlaceLeaves(spec, tree, &leaves);
+  ASSERT_TRUE(PlaceLeaves(spec, tree, {}, &leaves).ok());
   const std::vector<int> generations = GenerationsOf(tree);
   std::size_t tips = 0;
   for (std::size_t row = 0; row < tree.rows(); ++row) {
@@ -222,11 +222,21 @@ TEST(Leaves, SitOnTheTipsWithTheirSizes) {
   EXPECT_GT(shares.size(), leaves.count() / 2);
 }
 
+TEST(Leaves, StopWhenAsked) {
+  TreeSpec spec = Spec(4);
+  spec.leaves.emplace();
+  std::stop_source source;
+  source.request_stop();
+  LeafBlock leaves;
+  EXPECT_EQ(PlaceLeaves(spec, Grow(spec), source.get_token(), &leaves).code(),
+            absl::StatusCode::kCancelled);
+}
+
 TEST(Leaves, AreTheSameWhateverTheBlocks) {
   TreeSpec spec = Spec(6);
   spec.leaves.emplace();
   LeafBlock whole;
-  PlaceLeaves(spec, Grow(spec), &whole);
+  ASSERT_TRUE(PlaceLeaves(spec, Grow(spec), {}, &whole).ok());
   const auto tree = Tree::Create(spec);
   TreeGenerator generator(*tree, 0, {7, 50});
   std::vector<Float3> positions;
@@ -235,7 +245,7 @@ TEST(Leaves, AreTheSameWhateverTheBlocks) {
   LeafBlock leaves;
   while (!generator.Done()) {
     ASSERT_TRUE(generator.Next({}, &block).ok());
-    PlaceLeaves(spec, block, &leaves);
+    ASSERT_TRUE(PlaceLeaves(spec, block, {}, &leaves).ok());
     positions.insert(positions.end(), leaves.position.begin(),
                      leaves.position.end());
     sizes.insert(sizes.end(), leaves.size.begin(), leaves.size.end());

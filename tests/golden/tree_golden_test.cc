@@ -66,7 +66,9 @@ std::string RowsText(const SegmentBlock& tree) {
 
 std::string LeavesText(const TreeSpec& spec, const SegmentBlock& tree) {
   LeafBlock leaves;
-  if (spec.leaves.has_value()) PlaceLeaves(spec, tree, &leaves);
+  if (spec.leaves.has_value()) {
+    EXPECT_TRUE(PlaceLeaves(spec, tree, {}, &leaves).ok());
+  }
   Hash hash;
   hash.Add(leaves.row);
   hash.Add(leaves.position);
