@@ -7,16 +7,13 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "core/tree/leaves.h"
 #include "core/tree/tree_mesh.h"
-#include "hwy/targets.h"
 #include "tests/core/whole_tree.h"
+#include "tests/golden/golden_file.h"
 #include "tests/golden/tree_cases.h"
 
 namespace terrane::core {
@@ -98,63 +95,26 @@ std::string Line(const GoldenTree& golden) {
          MeshText(tree);
 }
 
-std::map<std::string, std::string> ReadGoldenLines() {
-  std::map<std::string, std::string> lines;
-  std::ifstream file(TERRANE_GOLDEN_FILE);
-  for (std::string line; std::getline(file, line);) {
-    if (!line.empty() && line[0] != '#') {
-      lines[line.substr(0, line.find(" | "))] = line;
-    }
+GoldenLines Lines() {
+  GoldenLines lines;
+  for (const GoldenTree& golden : GoldenTrees()) {
+    lines.emplace_back(golden.name, Line(golden));
   }
   return lines;
 }
 
-int Bless() {
-  std::ofstream file(TERRANE_GOLDEN_FILE);
-  file << kHeader;
-  for (const GoldenTree& golden : GoldenTrees()) file << Line(golden) << "\n";
-  file.close();
-  const bool good = file.good() && !testing::Test::HasFailure();
-  std::printf("%s %s\n", good ? "wrote" : "could not write",
-              TERRANE_GOLDEN_FILE);
-  return good ? 0 : 1;
-}
+void ExpectLines() { ExpectGoldenLines(Lines()); }
 
-void ExpectGoldenLines() {
-  const std::map<std::string, std::string> lines = ReadGoldenLines();
-  const std::vector<GoldenTree> trees = GoldenTrees();
-  EXPECT_EQ(lines.size(), trees.size()) << "cases without a line, or the other "
-                                           "way round, or two of one name";
-  for (const GoldenTree& golden : trees) {
-    const auto line = lines.find(golden.name);
-    if (line == lines.end()) {
-      ADD_FAILURE() << "no line for " << golden.name;
-    } else {
-      EXPECT_EQ(Line(golden), line->second);
-    }
-  }
-}
-
-TEST(GoldenTrees, HaveTheBytesTheyHad) { ExpectGoldenLines(); }
+TEST(GoldenTrees, HaveTheBytesTheyHad) { ExpectLines(); }
 
 TEST(GoldenTrees, HaveTheSameBytesOnEverySimdTarget) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    ExpectGoldenLines();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  OnEverySimdTarget(&ExpectLines);
 }
 
 }  // namespace
 }  // namespace terrane::core
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  if (argc == 2 && std::strcmp(argv[1], "--bless") == 0) {
-    return terrane::core::Bless();
-  }
-  return RUN_ALL_TESTS();
+  return terrane::core::GoldenMain(argc, argv, terrane::core::kHeader,
+                                   &terrane::core::Lines);
 }
