@@ -19,6 +19,7 @@
 
 #include "core/grid/lattice_window.h"
 #include "core/grid/raster.h"
+#include "core/spline/basis.h"
 
 namespace terrane::core {
 
@@ -38,7 +39,6 @@ struct Point2 {
 
 // --- The macro shape d(p) ----------------------------------------------------
 
-enum class SplineBasis { kBezier, kBSplineUniform, kBSplineClamped };
 enum class Interpolation { kBilinear, kCatmullRom, kBSpline };
 
 struct Plane {
