@@ -66,6 +66,7 @@ void SurfaceRows::PrepareColumns() {
   }
   column_gains_.assign(Padded(count_), 0.0f);
   TrainingGains(model_.spec.training, norms_, &work_, column_gains_);
+  gains_ = column_gains_;
 }
 
 void SurfaceRows::SetRow(std::int64_t iu) {
@@ -76,9 +77,11 @@ void SurfaceRows::SetRow(std::int64_t iu) {
     norm_u_ += BlendU(l) * BlendU(l);
   }
   FoldNet();
-  if (model_.spec.carry_over) return;
+}
+
+void SurfaceRows::FoldNetworks() {
   along_t_.drawn.clear();
-  along_t_.desired = DesiredOf(model_.network, iu);
+  along_t_.desired = DesiredOf(model_.network, iu_);
   if (model_.spec.method == SurfaceMethod::kProducts) {
     FoldProducts();
   } else {
@@ -217,11 +220,8 @@ void SurfaceRows::FoldAlongU() {
 }
 
 void SurfaceRows::SetGains() {
-  if (model_.spec.method != SurfaceMethod::kProducts) {
-    gains_ = column_gains_;
-    return;
-  }
-  gains_.resize(column_gains_.size());
+  // The other methods' inputs along t are the same in every row.
+  if (model_.spec.method != SurfaceMethod::kProducts) return;
   if (!model_.spec.training.has_value()) {
     // 1 / |x|^2 is a product of the two axes'.
     const auto row_gain = static_cast<float>(1.0 / norm_u_);
@@ -250,6 +250,7 @@ bool SurfaceRows::Heights(const std::stop_token& stop, float* out) {
   if (model_.spec.carry_over) {
     return carried_.Heights(grid_, iu_, first_, count_, stop, out);
   }
+  FoldNetworks();
   for (const Span& span : spans_) {
     const ColumnRun run = RunOf(span);
     const OneNetworkRow along_t = along_t_.From(span.first_pair);

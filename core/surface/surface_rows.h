@@ -61,6 +61,7 @@ class SurfaceRows {
 
   void PrepareColumns();
   void FoldNet();
+  void FoldNetworks();
   void FoldProducts();
   void FoldAlongT();
   void FoldAlongU();
