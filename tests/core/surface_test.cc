@@ -1,5 +1,6 @@
 #include "core/surface/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -144,6 +145,76 @@ TEST(SurfaceTest, WithoutTrainingAndWithUnitWeightsItIsTheRegularSurface) {
         ASSERT_NEAR(heights[k], regular[k], 2e-6 * 5);
       }
     }
+  }
+}
+
+// A curve by repeated linear interpolation of its control values (de Casteljau;
+// for B-splines de Boor, over the knots of `degree`).
+double CurveByInterpolation(SplineBasis basis, int degree,
+                            const std::vector<double>& control, double t) {
+  const int count = static_cast<int>(control.size());
+  if (basis == SplineBasis::kBezier) degree = count - 1;
+  const auto knot = [&](int index) {
+    const double at = index - degree;
+    return basis == SplineBasis::kBSplineUniform
+               ? at
+               : std::clamp(at, 0.0, static_cast<double>(count - degree));
+  };
+  const double position = t * (count - degree);
+  int span = degree;
+  while (span < count - 1 && position >= knot(span + 1)) ++span;
+  std::vector<double> d(control.begin() + (span - degree),
+                        control.begin() + span + 1);
+  for (int r = 1; r <= degree; ++r) {
+    for (int j = degree; j >= r; --j) {
+      const double low = knot(j + span - degree);
+      const double high = knot(j + 1 + span - r);
+      const double share = (position - low) / (high - low);
+      const auto at = static_cast<std::size_t>(j);
+      d[at] = (1 - share) * d[at - 1] + share * d[at];
+    }
+  }
+  return d[static_cast<std::size_t>(degree)];
+}
+
+TEST(SurfaceTest, TheRegularSurfaceAgreesWithDeCasteljauAndDeBoor) {
+  for (const SplineBasis basis :
+       {SplineBasis::kBezier, SplineBasis::kBSplineUniform,
+        SplineBasis::kBSplineClamped}) {
+    for (int degree = 1; degree <= 5; ++degree) {
+      SurfaceSpec spec;
+      spec.net = WavyNet(basis, degree, 9, 7);
+      const SurfaceGrid grid = {33, 21};
+      const std::vector<float> heights = RegularHeightsOf(spec, grid);
+      for (std::int64_t k = 0; k < 33 * 21; ++k) {
+        std::vector<double> along_u;
+        for (int j = 0; j < 7; ++j) {
+          std::vector<double> row;
+          for (int i = 0; i < 9; ++i) row.push_back(spec.net.At(i, j).z);
+          along_u.push_back(CurveByInterpolation(basis, degree, row,
+                                                 GridParameter(k % 33, 33)));
+        }
+        // Heights are from 1 to 5.
+        ASSERT_NEAR(heights[static_cast<std::size_t>(k)],
+                    CurveByInterpolation(basis, degree, along_u,
+                                         GridParameter(k / 33, 21)),
+                    1e-6);
+      }
+    }
+  }
+}
+
+TEST(SurfaceTest, ClampedNetsMeetTheirCorners) {
+  for (const SplineBasis basis :
+       {SplineBasis::kBezier, SplineBasis::kBSplineClamped,
+        SplineBasis::kBilinear, SplineBasis::kBicubicHermite}) {
+    SurfaceSpec spec;
+    spec.net = WavyNet(basis, 3, 6, 5);
+    const std::vector<float> heights = RegularHeightsOf(spec, {11, 9});
+    EXPECT_EQ(heights.front(), static_cast<float>(spec.net.At(0, 0).z));
+    EXPECT_EQ(heights[10], static_cast<float>(spec.net.At(5, 0).z));
+    EXPECT_EQ(heights[11 * 8], static_cast<float>(spec.net.At(0, 4).z));
+    EXPECT_EQ(heights.back(), static_cast<float>(spec.net.At(5, 4).z));
   }
 }
 
