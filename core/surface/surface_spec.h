@@ -36,7 +36,7 @@ struct Point3 {
 
 // A tensor-product net (eq. 1). Row j holds the points P_0j .. P_nj.
 struct PointNet {
-  SplineBasis basis = SplineBasis::kBezier;
+  SplineBasis basis = SplineBasis::kBSplineClamped;
   int degree = 3;   // where HasDegree(basis)
   int columns = 0;  // along t
   int rows = 0;     // along u

@@ -6,6 +6,8 @@
 
 #include "core/base/simd_target.h"
 #include "core/base/violations.h"
+#include "core/surface/surface.h"
+#include "core/surface/validate_surface.h"
 #include "core/terrain/spec_checks.h"
 #include "server/actor/cost_meter.h"
 #include "server/actor/error_reason.h"
@@ -42,7 +44,8 @@ class TerrainActor : public Actor {
         workers_(workers),
         rasters_(limits.raster_store_bytes),
         terrains_(kMaxTerrains, limits.raster_store_bytes),
-        meter_(std::make_shared<CostMeter>()) {}
+        meter_(std::make_shared<CostMeter>()),
+        surfaces_(limits) {}
 
   absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
       const v1::StreamTilesRequest& request) override;
@@ -55,6 +58,18 @@ class TerrainActor : public Actor {
   absl::StatusOr<v1::GetPresetResponse> GetPreset(
       const v1::GetPresetRequest& request) override;
   v1::GetServerInfoResponse GetServerInfo() override;
+  absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
+      const v1::StreamSurfaceRequest& request) override {
+    return surfaces_.Open(request);
+  }
+  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest& request) override {
+    return surfaces_.Estimate(request);
+  }
+  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest& request) override {
+    return surfaces_.GetPreset(request);
+  }
   std::unique_ptr<RasterUpload> BeginUpload() override {
     return MakeRasterUpload(limits_, &rasters_);
   }
@@ -84,6 +99,7 @@ class TerrainActor : public Actor {
   RasterStore rasters_;
   TerrainCache terrains_;
   const std::shared_ptr<CostMeter> meter_;
+  const SurfaceMaker surfaces_;
 };
 
 // The spec to plan with, or null when it has violations.
@@ -282,7 +298,20 @@ v1::ServerLimits WriteLimits(const Limits& limits) {
   message.set_max_raster_samples(limits.max_raster_samples);
   message.set_raster_store_bytes(limits.raster_store_bytes);
   message.set_max_concurrent_streams(limits.max_concurrent_streams);
+  message.set_max_surface_side(core::kMaxGridSide);
+  message.set_max_weight_rules(core::kMaxWeightRules);
   return message;
+}
+
+template <typename Preset>
+void AddSummaries(const std::map<std::string, Preset>& presets,
+                  const char* generator, v1::GetServerInfoResponse* info) {
+  for (const auto& [name, preset] : presets) {
+    v1::PresetSummary* summary = info->add_presets();
+    summary->set_name(name);
+    summary->set_title(preset.title());
+    summary->set_generator(generator);
+  }
 }
 
 v1::GetServerInfoResponse TerrainActor::GetServerInfo() {
@@ -292,12 +321,10 @@ v1::GetServerInfoResponse TerrainActor::GetServerInfo() {
   info.set_simd_target(core::SimdTargetName());
   info.set_workers(workers_);
   *info.mutable_limits() = WriteLimits(limits_);
-  for (const auto& [name, preset] : Presets()) {
-    v1::PresetSummary* summary = info.add_presets();
-    summary->set_name(name);
-    summary->set_title(preset.title());
-    summary->set_generator("terrain");
-  }
+  info.set_surface_revision(core::kSurfaceRevision);
+  AddSummaries(Presets(), "terrain", &info);
+  // After all others, by name as well.
+  AddSummaries(SurfacePresets(), "surface", &info);
   return info;
 }
 

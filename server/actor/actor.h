@@ -19,8 +19,10 @@
 #include "absl/status/statusor.h"
 #include "core/terrain/terrain.h"
 #include "server/actor/limits.h"
+#include "server/actor/surface_job.h"
 #include "terrane/v1/info.pb.h"
 #include "terrane/v1/raster.pb.h"
+#include "terrane/v1/surface.pb.h"
 #include "terrane/v1/terrain.pb.h"
 
 namespace terrane::server {
@@ -66,6 +68,13 @@ class Actor {
   virtual absl::StatusOr<v1::GetPresetResponse> GetPreset(
       const v1::GetPresetRequest& request) = 0;
   virtual v1::GetServerInfoResponse GetServerInfo() = 0;
+
+  virtual absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
+      const v1::StreamSurfaceRequest& request) = 0;
+  virtual absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest& request) = 0;
+  virtual absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest& request) = 0;
 
   virtual std::unique_ptr<RasterUpload> BeginUpload() = 0;
   virtual absl::StatusOr<v1::GetRasterResponse> GetRaster(

@@ -10,8 +10,10 @@
 
 #include "core/base/violations.h"
 #include "core/grid/lattice_window.h"
+#include "core/surface/surface_spec.h"
 #include "core/terrain/spec_checks.h"
 #include "core/terrain/terrain_spec.h"
+#include "terrane/v1/surface_recipe.pb.h"
 #include "terrane/v1/terrain.pb.h"
 
 namespace terrane::server {
@@ -32,11 +34,21 @@ inline constexpr EnumTable<v1::HeightMapping, core::HeightMapping, 2>
         {v1::HEIGHT_MAPPING_BOLTZMANN, core::HeightMapping::kBoltzmann},
     }};
 
-inline constexpr EnumTable<v1::SplineBasis, core::SplineBasis, 3> kSplineBases{{
+inline constexpr EnumTable<v1::SplineBasis, core::SplineBasis, 5> kSplineBases{{
     {v1::SPLINE_BASIS_BSPLINE_CLAMPED, core::SplineBasis::kBSplineClamped},
     {v1::SPLINE_BASIS_BSPLINE_UNIFORM, core::SplineBasis::kBSplineUniform},
     {v1::SPLINE_BASIS_BEZIER, core::SplineBasis::kBezier},
+    {v1::SPLINE_BASIS_BILINEAR, core::SplineBasis::kBilinear},
+    {v1::SPLINE_BASIS_BICUBIC_HERMITE, core::SplineBasis::kBicubicHermite},
 }};
+
+inline constexpr EnumTable<v1::SurfaceMethod, core::SurfaceMethod, 4>
+    kSurfaceMethods{{
+        {v1::SURFACE_METHOD_PRODUCTS, core::SurfaceMethod::kProducts},
+        {v1::SURFACE_METHOD_ALONG_T, core::SurfaceMethod::kAlongT},
+        {v1::SURFACE_METHOD_TWO_FACTORS, core::SurfaceMethod::kTwoFactors},
+        {v1::SURFACE_METHOD_TWO_TERMS, core::SurfaceMethod::kTwoTerms},
+    }};
 
 inline constexpr EnumTable<v1::Interpolation, core::Interpolation, 3>
     kRasterInterpolations{{

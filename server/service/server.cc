@@ -26,6 +26,7 @@ Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
       parts_{actor, &workers_, &gate_, log,
              std::make_shared<BufferPool>(kBufferPoolBytes)},
       terrain_service_(parts_),
+      surface_service_(parts_),
       raster_service_(parts_),
       info_service_(parts_) {}
 
@@ -40,6 +41,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(),
                            &server->port_);
   builder.RegisterService(&server->terrain_service_);
+  builder.RegisterService(&server->surface_service_);
   builder.RegisterService(&server->raster_service_);
   builder.RegisterService(&server->info_service_);
   builder.SetMaxReceiveMessageSize(
@@ -66,6 +68,7 @@ Server::~Server() {
 void Server::SetServing(bool serving) {
   grpc::HealthCheckServiceInterface* health = server_->GetHealthCheckService();
   for (const char* name : {"", v1::TerrainService::service_full_name(),
+                           v1::SurfaceService::service_full_name(),
                            v1::RasterService::service_full_name(),
                            v1::InfoService::service_full_name()}) {
     health->SetServingStatus(name, serving);

@@ -19,6 +19,7 @@ constexpr std::int64_t kGridSide = 4 * kSide + 1;
 
 PointNet BezierNet(int side) {
   PointNet net;
+  net.basis = SplineBasis::kBezier;
   net.columns = side;
   net.rows = side;
   for (int j = 0; j < side; ++j) {

@@ -118,6 +118,7 @@ PointNet HillNet() {
                                      {0.5, 2, 1.6, 0.4},
                                      {0, 0.3, 0.4, 0}};
   PointNet net;
+  net.basis = SplineBasis::kBezier;
   net.columns = 4;
   net.rows = 4;
   for (int j = 0; j < 4; ++j) {

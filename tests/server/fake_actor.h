@@ -103,6 +103,18 @@ class FakeActor : public Actor {
     return absl::InternalError("cannot read /etc/secret");
   }
   v1::GetServerInfoResponse GetServerInfo() override { return {}; }
+  absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
+      const v1::StreamSurfaceRequest&) override {
+    return absl::UnimplementedError("no surfaces here");
+  }
+  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest&) override {
+    return v1::EstimateSurfaceResponse();
+  }
+  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest&) override {
+    return v1::GetSurfacePresetResponse();
+  }
   std::unique_ptr<RasterUpload> BeginUpload() override { return nullptr; }
   absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest&) override {
