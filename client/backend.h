@@ -18,6 +18,7 @@
 #include "core/grid/raster.h"
 #include "terrane/v1/info.pb.h"
 #include "terrane/v1/raster.pb.h"
+#include "terrane/v1/surface.pb.h"
 #include "terrane/v1/terrain.pb.h"
 
 namespace terrane::client {
@@ -27,6 +28,11 @@ using OnHeader = std::function<absl::Status(const v1::StreamHeader&)>;
 // Takes the tiles in the order of their index. An error ends the stream and is
 // what StreamTiles answers.
 using OnTile = std::function<absl::Status(const v1::HeightTile&)>;
+
+// The same of a surface; tiles come as the messages that hold them.
+using OnSurfaceHeader = std::function<absl::Status(const v1::SurfaceHeader&)>;
+using OnSurfaceTile =
+    std::function<absl::Status(const v1::StreamSurfaceResponse&)>;
 
 class Backend {
  public:
@@ -48,6 +54,16 @@ class Backend {
       const v1::GetPresetRequest& request, std::stop_token stop) = 0;
   virtual absl::StatusOr<v1::GetServerInfoResponse> GetServerInfo(
       std::stop_token stop) = 0;
+
+  // As StreamTiles, verified by client/surface_verifier.h.
+  virtual absl::Status StreamSurface(const v1::StreamSurfaceRequest& request,
+                                     const OnSurfaceHeader& on_header,
+                                     const OnSurfaceTile& on_tile,
+                                     std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest& request, std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest& request, std::stop_token stop) = 0;
 
   // Uploads a raster whose posts without data are NaN, and answers its id. The
   // backend keeps the raster: a server that has evicted it gets it again.

@@ -32,6 +32,15 @@ class LocalBackend : public Backend {
       const v1::GetPresetRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::GetServerInfoResponse> GetServerInfo(
       std::stop_token stop) override;
+  absl::Status StreamSurface(const v1::StreamSurfaceRequest& request,
+                             const OnSurfaceHeader& on_header,
+                             const OnSurfaceTile& on_tile,
+                             std::stop_token stop) override;
+  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest& request,
+      std::stop_token stop) override;
   absl::StatusOr<std::string> UploadRaster(
       std::shared_ptr<const core::Raster> raster,
       std::stop_token stop) override;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "client/raster_upload.h"
+#include "client/surface_verifier.h"
 
 namespace terrane::client {
 namespace {
@@ -88,11 +89,21 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& target) {
                                    arguments);
 }
 
+// What a message that is no header brings.
+const v1::HeightTile& TileOf(const v1::StreamTilesResponse& message) {
+  return message.tile();
+}
+const v1::StreamSurfaceResponse& TileOf(
+    const v1::StreamSurfaceResponse& message) {
+  return message;
+}
+
 }  // namespace
 
 RemoteBackend::RemoteBackend(const std::string& target) : target_(target) {
   const std::shared_ptr<grpc::Channel> channel = MakeChannel(target);
   terrain_ = v1::TerrainService::NewStub(channel);
+  surface_ = v1::SurfaceService::NewStub(channel);
   raster_ = v1::RasterService::NewStub(channel);
   info_ = v1::InfoService::NewStub(channel);
 }
@@ -154,24 +165,52 @@ absl::Status RemoteBackend::StreamTiles(const v1::StreamTilesRequest& request,
                                         const OnTile& on_tile,
                                         std::stop_token stop) {
   TileVerifier verifier(request);
+  v1::StreamTilesRequest rest = request;
+  const auto open = [&](grpc::ClientContext* context) {
+    rest.set_first_tile(verifier.next_index());
+    return terrain_->StreamTiles(context, rest);
+  };
   return Run(
       CallKind::kStream,
-      [&] { return StreamOnce(request, on_header, on_tile, stop, &verifier); },
+      [&] {
+        return StreamOnce<v1::StreamTilesResponse>(open, on_header, on_tile,
+                                                   stop, &verifier);
+      },
       stop);
 }
 
-RemoteBackend::Attempt RemoteBackend::StreamOnce(
-    const v1::StreamTilesRequest& request, const OnHeader& on_header,
-    const OnTile& on_tile, std::stop_token stop, TileVerifier* verifier) {
-  v1::StreamTilesRequest rest = request;
-  rest.set_first_tile(verifier->next_index());
+absl::Status RemoteBackend::StreamSurface(
+    const v1::StreamSurfaceRequest& request, const OnSurfaceHeader& on_header,
+    const OnSurfaceTile& on_tile, std::stop_token stop) {
+  SurfaceVerifier verifier(request);
+  v1::StreamSurfaceRequest rest = request;
+  const auto open = [&](grpc::ClientContext* context) {
+    rest.set_first_tile(verifier.next_index());
+    return surface_->StreamSurface(context, rest);
+  };
+  return Run(
+      CallKind::kStream,
+      [&] {
+        return StreamOnce<v1::StreamSurfaceResponse>(open, on_header, on_tile,
+                                                     stop, &verifier);
+      },
+      stop);
+}
+
+template <typename Message, typename Open, typename Header, typename Tile,
+          typename Verifier>
+RemoteBackend::Attempt RemoteBackend::StreamOnce(const Open& open,
+                                                 const Header& on_header,
+                                                 const Tile& on_tile,
+                                                 std::stop_token stop,
+                                                 Verifier* verifier) {
   grpc::ClientContext context;
   const CancelOnStop cancel(stop, &context);
-  const auto reader = terrain_->StreamTiles(&context, rest);
+  const auto reader = open(&context);
 
   Attempt attempt;
   absl::Status status;
-  v1::StreamTilesResponse message;
+  Message message;
   while (status.ok() && reader->Read(&message)) {
     if (message.has_header()) {
       const bool first = !verifier->has_header();
@@ -182,9 +221,9 @@ RemoteBackend::Attempt RemoteBackend::StreamOnce(
         attempt.progressed = true;
       }
     } else {
-      status = verifier->CheckTile(message.tile());
+      status = verifier->CheckTile(TileOf(message));
       if (status.ok()) {
-        status = on_tile(message.tile());
+        status = on_tile(TileOf(message));
         attempt.final = !status.ok();
         attempt.progressed = true;
       }
@@ -248,6 +287,20 @@ absl::StatusOr<v1::GetServerInfoResponse> RemoteBackend::GetServerInfo(
   return Unary<v1::GetServerInfoResponse>(info_.get(),
                                           &v1::InfoService::Stub::GetServerInfo,
                                           v1::GetServerInfoRequest(), stop);
+}
+
+absl::StatusOr<v1::EstimateSurfaceResponse> RemoteBackend::EstimateSurface(
+    const v1::EstimateSurfaceRequest& request, std::stop_token stop) {
+  return Unary<v1::EstimateSurfaceResponse>(
+      surface_.get(), &v1::SurfaceService::Stub::EstimateSurface, request,
+      stop);
+}
+
+absl::StatusOr<v1::GetSurfacePresetResponse> RemoteBackend::GetSurfacePreset(
+    const v1::GetSurfacePresetRequest& request, std::stop_token stop) {
+  return Unary<v1::GetSurfacePresetResponse>(
+      surface_.get(), &v1::SurfaceService::Stub::GetSurfacePreset, request,
+      stop);
 }
 
 absl::StatusOr<v1::GetRasterResponse> RemoteBackend::GetRaster(

@@ -17,6 +17,7 @@
 #include "client/tile_verifier.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
+#include "terrane/v1/surface.grpc.pb.h"
 #include "terrane/v1/terrain.grpc.pb.h"
 
 namespace terrane::client {
@@ -38,6 +39,15 @@ class RemoteBackend : public Backend {
   absl::StatusOr<v1::GetPresetResponse> GetPreset(
       const v1::GetPresetRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::GetServerInfoResponse> GetServerInfo(
+      std::stop_token stop) override;
+  absl::Status StreamSurface(const v1::StreamSurfaceRequest& request,
+                             const OnSurfaceHeader& on_header,
+                             const OnSurfaceTile& on_tile,
+                             std::stop_token stop) override;
+  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest& request,
       std::stop_token stop) override;
   absl::StatusOr<std::string> UploadRaster(
       std::shared_ptr<const core::Raster> raster,
@@ -62,9 +72,13 @@ class RemoteBackend : public Backend {
   absl::Status UploadAgain(const std::string& raster_id, std::stop_token stop);
   Attempt UploadOnce(const core::Raster& raster, std::stop_token stop,
                      std::string* raster_id);
-  Attempt StreamOnce(const v1::StreamTilesRequest& request,
-                     const OnHeader& on_header, const OnTile& on_tile,
-                     std::stop_token stop, TileVerifier* verifier);
+  // One try of a stream: `open` starts it at the tile that is missing, the
+  // verifier knows which.
+  template <typename Message, typename Open, typename Header, typename Tile,
+            typename Verifier>
+  Attempt StreamOnce(const Open& open, const Header& on_header,
+                     const Tile& on_tile, std::stop_token stop,
+                     Verifier* verifier);
 
   // One unary call; `method` is a member of the stub.
   template <typename Response, typename Stub, typename Method, typename Request>
@@ -73,6 +87,7 @@ class RemoteBackend : public Backend {
 
   std::string target_;
   std::unique_ptr<v1::TerrainService::Stub> terrain_;
+  std::unique_ptr<v1::SurfaceService::Stub> surface_;
   std::unique_ptr<v1::RasterService::Stub> raster_;
   std::unique_ptr<v1::InfoService::Stub> info_;
   // Rasters uploaded so far, by id.

@@ -11,6 +11,7 @@
 
 #include "client/commands/command.h"
 #include "client/commands/shared_options.h"
+#include "client/commands/surface_options.h"
 #include "client/csv.h"
 #include "client/exit_code.h"
 #include "client/memory_stream.h"
@@ -53,6 +54,10 @@ struct RenderCommand {
   double tilt_deg = PerspectiveOptions().tilt_deg;
   std::optional<int> width;
   std::string title;
+  // Surfaces.
+  SurfaceOptions surface;
+  SurfaceSize size;
+  bool control_net = false;
 };
 
 core::Light LightOf(const RenderCommand& command, const core::Light& usual) {
@@ -238,6 +243,27 @@ absl::StatusOr<Picture> DrawGenerated(const RenderCommand& command,
              : DrawGeneratedField(viewed, *terrain, level, backend.get(), stop);
 }
 
+// A surface is chosen by a preset's name, or by a net.
+bool IsSurface(const RenderCommand& command) {
+  return IsSurfacePreset(command.terrain.preset) ||
+         !command.surface.net_file.empty();
+}
+
+absl::StatusOr<Picture> DrawSurfacePicture(const RenderCommand& command,
+                                           std::stop_token stop) {
+  const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
+  SurfaceOptions surface = command.surface;
+  surface.preset = command.terrain.preset;
+  surface.seed = command.terrain.seed;
+  SurfaceViewOptions options;
+  options.width = command.width.value_or(options.width);
+  options.turn_deg = command.turn_deg;
+  options.tilt_deg = command.tilt_deg;
+  options.light = LightOf(command, options.light);
+  return DrawSurface(surface, command.size, command.control_net, options,
+                     backend.get(), std::move(stop));
+}
+
 std::string CaptionOf(const std::string& path, const PlacedRaster& placed,
                       const core::GroundScale& scale) {
   const core::GroundSpacing& spacing = scale.Row(placed.raster.height / 2);
@@ -283,6 +309,7 @@ int Run(const RenderCommand& command, std::stop_token stop) {
   const absl::StatusOr<Picture> picture =
       !command.side_by_side.empty() ? DrawSideBySide(command)
       : !command.input.empty()      ? DrawFile(command)
+      : IsSurface(command)          ? DrawSurfacePicture(command, stop)
                                     : DrawGenerated(command, stop);
   if (!picture.ok()) return ReportStatus(picture.status());
   return ReportStatus(WritePicture(command.out, *picture));
@@ -368,6 +395,12 @@ void AddRenderCommand(CLI::App* app, Action* action) {
   AddPictureOptions(subcommand, command.get());
   AddRecipeOptions(subcommand, &command->terrain);
   AddExtentOptions(subcommand, &command->extent);
+  AddNetOptions(subcommand, &command->surface);
+  AddSizeOption(subcommand, &command->size);
+  subcommand
+      ->add_flag("--control-net", command->control_net,
+                 "Draw the control polyhedron of a surface, too")
+      ->group("Surface");
   AddConnectionOptions(subcommand, &command->connection);
   subcommand->footer(kFooter);
   subcommand->final_callback([command, action] {
