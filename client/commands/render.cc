@@ -259,6 +259,7 @@ absl::StatusOr<Picture> DrawSurfacePicture(const RenderCommand& command,
   options.width = command.width.value_or(options.width);
   options.turn_deg = command.turn_deg;
   options.tilt_deg = command.tilt_deg;
+  options.exaggeration = command.exaggeration.value_or(1);
   options.light = LightOf(command, options.light);
   return DrawSurface(surface, command.size, command.control_net, options,
                      backend.get(), std::move(stop));

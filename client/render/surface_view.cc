@@ -29,6 +29,7 @@ class Viewpoint {
     up_x_ = std::sin(turn) * std::sin(tilt);
     up_y_ = std::cos(turn) * std::sin(tilt);
     up_z_ = std::cos(tilt);
+    exaggeration_ = options.exaggeration;
   }
 
   // Widens the view so that it holds the point.
@@ -63,7 +64,7 @@ class Viewpoint {
   DepthPoint Seen(const core::Float3& p) const {
     const double x = static_cast<double>(p.x);
     const double y = static_cast<double>(p.y);
-    const double z = static_cast<double>(p.z);
+    const double z = static_cast<double>(p.z) * exaggeration_;
     // Away from the viewer: up x right, whose z is 0.
     const double away_x = -up_z_ * right_y_;
     const double away_y = up_z_ * right_x_;
@@ -74,6 +75,7 @@ class Viewpoint {
 
   double right_x_, right_y_;
   double up_x_, up_y_, up_z_;
+  double exaggeration_;
   double min_x_ = std::numeric_limits<double>::infinity();
   double max_x_ = -std::numeric_limits<double>::infinity();
   double min_y_ = std::numeric_limits<double>::infinity();
@@ -83,10 +85,15 @@ class Viewpoint {
   int height_ = 1;
 };
 
-Rgb Shaded(const core::Float3& normal, const core::Light& light) {
-  const double lit = std::fabs(static_cast<double>(normal.x) * light.east +
-                               static_cast<double>(normal.y) * light.north +
-                               static_cast<double>(normal.z) * light.up);
+Rgb Shaded(const core::Float3& normal, const SurfaceViewOptions& options) {
+  // Heights that are stretched flatten the normal.
+  const double x = static_cast<double>(normal.x);
+  const double y = static_cast<double>(normal.y);
+  const double z = static_cast<double>(normal.z) / options.exaggeration;
+  const core::Light& light = options.light;
+  const double lit =
+      std::fabs(x * light.east + y * light.north + z * light.up) /
+      std::sqrt(x * x + y * y + z * z);
   const double shade = kAmbient + (1 - kAmbient) * lit;
   return {kGround.red * shade, kGround.green * shade, kGround.blue * shade};
 }
@@ -126,7 +133,7 @@ Picture RenderSurface(const core::Mesh& mesh, const ControlPolyhedron& net,
   std::vector<Rgb> colours;
   for (std::size_t k = 0; k < mesh.positions.size(); ++k) {
     seen.push_back(view.Project(mesh.positions[k]));
-    colours.push_back(Shaded(mesh.normals[k], options.light));
+    colours.push_back(Shaded(mesh.normals[k], options));
   }
   DepthCanvas depth(options.width * kSupersampling, view.height());
   for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {

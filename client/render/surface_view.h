@@ -27,6 +27,8 @@ struct SurfaceViewOptions {
   // horizon.
   double turn_deg = 28;
   double tilt_deg = 33;
+  // Multiplies the heights.
+  double exaggeration = 1;
   core::Light light = {-0.70710678118654752, 0, 0.70710678118654752};
 };
 
