@@ -71,6 +71,26 @@ class CliTest(unittest.TestCase):
                 self.run_terrane("terrain", *choice, "--local", "--threads", "3", "--out", local)
                 self.assertTrue(filecmp.cmp(remote, local, shallow=False), (choice, extension))
 
+    def test_surfaces_are_the_same_from_the_server_and_locally(self):
+        for extension in ["glb", "obj", "tif", "f32"]:
+            remote, local = self.folder / f"r.{extension}", self.folder / f"l.{extension}"
+            choice = ["surface", "--preset", "surface/fig05", "--size", "300x270", "--seed", "9"]
+            self.ask(*choice, "--out", remote)
+            self.run_terrane(*choice, "--local", "--threads", "3", "--out", local)
+            self.assertTrue(filecmp.cmp(remote, local, shallow=False), extension)
+
+    def test_a_surface_of_a_net_from_a_file(self):
+        net = self.folder / "net.csv"
+        net.write_text("x,y,z\n" + "".join(f"{i},{j},{i * j}\n" for j in range(5) for i in range(4)))
+        out = self.folder / "net.tif"
+        self.ask("surface", "--net", net, "--net-columns", "4", "--basis", "bicubic-hermite", "--size", "31x41", "--out", out)
+        heights = gdal.Open(str(out)).ReadAsArray()
+        self.assertEqual(heights.shape, (41, 31))
+        # Trained to a response of 1, the corners keep their points.
+        self.assertAlmostEqual(float(heights[40, 30]), 12, places=4)
+        failed = self.ask("surface", "--net", net, "--out", self.folder / "x.glb", expected=1)
+        self.assertIn("20 points make no rectangle", failed.stderr)
+
     def test_refined_model_keeps_its_posts_and_place(self):
         out = self.folder / "fine.tif"
         summary = json.loads(self.ask("terrain", "--dem", DEM, "--level", "3", "--out", out, "--json").stdout)
