@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/terrain/terrain.h"
-#include "server/actor/embedded_presets.h"
 #include "server/actor/limits.h"
 #include "server/convert/terrain_convert.h"
 
@@ -168,8 +167,8 @@ Place WithinCircle(double radius) {
 
 std::vector<std::string> Names() {
   std::vector<std::string> names;
-  for (const EmbeddedPreset& preset : EmbeddedPresets()) {
-    names.push_back(preset.name);
+  for (const auto& [name, preset] : Presets()) {
+    names.push_back(name);
   }
   return names;
 }
