@@ -3,8 +3,8 @@
 // The network at (t+1, u) starts from the trained weights at (t, u); weights
 // whose rule says so are set anew by it. The first sample of a row starts from
 // the rules. So a row is a recurrence: a window that begins at column x costs
-// x more samples in each of its rows. In double precision and one by one: ten to
-// fifteen times the cost of independent samples.
+// x more samples in each of its rows. In double precision and one by one: ten
+// to fifteen times the cost of independent samples.
 //
 // Threads: a CarriedRow belongs to one thread. Determinism: a height is a
 // function of (spec, grid, it, iu).
