@@ -16,6 +16,7 @@ SERVER, STUBS = sys.argv[1:3]
 sys.path.insert(0, STUBS)
 
 from terrane.v1 import common_pb2, info_pb2, info_pb2_grpc, raster_pb2, raster_pb2_grpc  # noqa: E402
+from terrane.v1 import surface_pb2, surface_pb2_grpc  # noqa: E402
 from terrane.v1 import terrain_pb2, terrain_pb2_grpc, terrain_recipe_pb2  # noqa: E402
 
 FIELD = descriptor_pb2.FieldDescriptorProto
@@ -113,6 +114,22 @@ class PythonClientTest(unittest.TestCase):
         self.assertIn("(0, 1)", violations["terrain.recipe.roughness"])
         self.assertIn("level", violations)
         self.assertIn("window.width", violations)
+
+    def test_a_surface_comes_as_columns_that_numpy_reads(self):
+        request = surface_pb2.StreamSurfaceRequest(columns=90, rows=70, tile_size=40, uvs=True)
+        request.surface.preset = "surface/fig02"
+        stub = surface_pb2_grpc.SurfaceServiceStub(self.channel)
+        header, *messages = list(stub.StreamSurface(request))
+        self.assertEqual((header.header.tile_columns, header.header.tile_rows, len(messages)), (3, 2, 6))
+        normals = numpy.full((70, 90, 3), numpy.nan, "<f4")
+        uvs = numpy.full((70, 90, 2), numpy.nan, "<f4")
+        for message in messages:
+            tile, window = message.mesh_tile, message.mesh_tile.window
+            place = (slice(window.y, window.y + window.height), slice(window.x, window.x + window.width))
+            normals[place] = numpy.frombuffer(tile.normals, "<f4").reshape(window.height, window.width, 3)
+            uvs[place] = numpy.frombuffer(tile.uvs, "<f4").reshape(window.height, window.width, 2)
+        numpy.testing.assert_allclose(numpy.linalg.norm(normals, axis=2), 1, atol=1e-6)
+        numpy.testing.assert_array_equal(uvs[0, :, 0], (numpy.arange(90) / 89).astype("<f4"))
 
     def test_unknown_preset_is_a_google_rpc_error_info(self):
         request = terrain_pb2.GetPresetRequest(name="fbm/nothing")
