@@ -43,6 +43,10 @@ double AncestorWalk::Radius(FractalSource source) {
   return source == FractalSource::kSubdivision ? 7.0 : 3.0;
 }
 
+double AncestorWalk::Separation(FractalSource source) {
+  return source == FractalSource::kSubdivision ? 10.0 : 6.0;
+}
+
 void AncestorWalk::Start(int level, LatticePoint point) {
   level_ = level;
   started_ = false;

@@ -60,6 +60,11 @@ class AncestorWalk {
   // axis, in spacings of level n.
   static double Radius(FractalSource source);
 
+  // Points this far apart along an axis (spacings of level n) have no common
+  // ancestor of level n that counts: the products of their weights sum up to
+  // less than 2^-28.
+  static double Separation(FractalSource source);
+
  private:
   // Weights of the points of a box, row-major.
   struct Weights {

@@ -42,6 +42,20 @@ struct PointHash {
   }
 };
 
+// About how many ancestors of one level a spot has.
+double AncestorsPerLevel(FractalSource source, int dimensions) {
+  if (dimensions == 1) return 4;
+  switch (source) {
+    case FractalSource::kMidpoint:
+      return 13;
+    case FractalSource::kSuccessive:
+      return 26;
+    case FractalSource::kSubdivision:
+      return 60;
+  }
+  return 60;
+}
+
 // A displacement: the half step and the point.
 struct AncestorKey {
   std::uint32_t slot = 0;
@@ -211,23 +225,29 @@ void Conditioner::FindOwnLevels() {
   points.reserve(spots_.size());
   for (const Spot& spot : spots_) points.emplace_back(spot.u, spot.v);
   const bg::index::rtree<TreePoint, bg::index::rstar<16>> tree(points);
+  // Some more than the one asked for: the nearest along the axes may not be the
+  // nearest by the Euclidean distance.
+  constexpr unsigned kLookedAt = 6;
   std::vector<TreePoint> nearest;
   for (const TreePoint& point : points) {
     nearest.clear();
-    tree.query(bg::index::nearest(point, 2), std::back_inserter(nearest));
+    tree.query(bg::index::nearest(point, kLookedAt),
+               std::back_inserter(nearest));
     double distance = std::numeric_limits<double>::infinity();
+    double farthest = 0;
     for (const TreePoint& other : nearest) {
-      const double du = other.get<0>() - point.get<0>();
-      const double dv = other.get<1>() - point.get<1>();
-      if (du != 0 || dv != 0) {
-        distance = std::min(distance, std::sqrt(du * du + dv * dv));
-      }
+      const double du = std::fabs(other.get<0>() - point.get<0>());
+      const double dv = std::fabs(other.get<1>() - point.get<1>());
+      if (du != 0 || dv != 0) distance = std::min(distance, std::max(du, dv));
+      farthest = std::max(farthest, std::sqrt(du * du + dv * dv));
     }
-    // Along the axes no other spot is nearer than that.
-    distance *= std::sqrt(0.5);
+    if (nearest.size() == kLookedAt) {
+      // Those not looked at are at least that far along an axis.
+      distance = std::min(distance, farthest * std::sqrt(0.5));
+    }
     int level = 0;
-    const double apart = 2 * AncestorWalk::Radius(process_.source);
-    while (level <= kMaxLevel && std::ldexp(apart, -level) >= distance) ++level;
+    const double apart = AncestorWalk::Separation(process_.source);
+    while (level <= kMaxLevel && std::ldexp(apart, -level) > distance) ++level;
     own_level_.push_back(level);
   }
 }
@@ -379,7 +399,15 @@ absl::StatusOr<CorrectionTable> Conditioner::Run() {
   if (spots_.empty()) return CorrectionTable();
   FindOwnLevels();
   FindHeldPoints();
-  gram_.ReserveRows(spots_.size());
+  std::size_t shared_levels = 0;
+  for (std::size_t k = 0; k < spots_.size(); ++k) {
+    shared_levels +=
+        static_cast<std::size_t>(std::min(own_level_[k], spots_[k].level + 1));
+  }
+  // At once: growing would hold 10^8 elements twice.
+  gram_.Reserve(spots_.size(),
+                shared_levels * static_cast<std::size_t>(AncestorsPerLevel(
+                                    process_.source, process_.dimensions)));
   for (std::size_t k = 0; k < spots_.size(); ++k) {
     if (!Poll(k, 0, kWalked)) return StoppedStatus();
     AddRow(k);

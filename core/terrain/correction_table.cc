@@ -1,6 +1,7 @@
 #include "core/terrain/correction_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <tuple>
@@ -147,6 +148,7 @@ void CorrectionTable::Builder::Allocate() {
 
 void CorrectionTable::Builder::Add(std::uint32_t slot, int level,
                                    LatticePoint point, float value) {
+  if (std::fabs(value) < kLeastValue) return;
   ForEachImage(level, point, [&](const LatticePoint& image) {
     const std::uint64_t at = (*slots_[slot].Find(KeyOf(image)))++;
     slots_[slot].table.places[at] = PlaceOf(image);
@@ -156,7 +158,26 @@ void CorrectionTable::Builder::Add(std::uint32_t slot, int level,
 
 CorrectionTable CorrectionTable::Builder::Build() && {
   CorrectionTable result;
-  for (Slot& slot : slots_) result.slots_.push_back(std::move(slot.table));
+  for (Slot& slot : slots_) {
+    // Closes the gaps that entries left out have made.
+    std::uint64_t next = 0;
+    for (Bucket& bucket : slot.table.buckets) {
+      const auto filled = slot.counts.find(bucket.key);
+      const std::uint64_t end =
+          filled == slot.counts.end() ? bucket.first : filled->second;
+      const std::uint64_t first = std::exchange(bucket.first, next);
+      for (std::uint64_t k = first; k < end; ++k, ++next) {
+        slot.table.places[next] = slot.table.places[k];
+        slot.table.values[next] = slot.table.values[k];
+      }
+    }
+    slot.table.places.resize(next);
+    slot.table.places.shrink_to_fit();
+    slot.table.values.resize(next);
+    slot.table.values.shrink_to_fit();
+    slot.counts.clear();
+    result.slots_.push_back(std::move(slot.table));
+  }
   return result;
 }
 
@@ -186,17 +207,33 @@ void CorrectionTable::AddTo(std::uint32_t slot_id, std::int64_t x,
         bucket, slot.buckets.end() - 1, BucketKey{row, first.x},
         [](const Bucket& b, const BucketKey& key) { return b.key < key; });
     for (; bucket->key.y == row && bucket->key.x <= last.x; ++bucket) {
-      const std::int64_t dx = (bucket->key.x << kBucketBits) - x;
-      const std::int64_t dy = (bucket->key.y << kBucketBits) - y;
-      for (std::uint64_t k = bucket->first; k < (bucket + 1)->first; ++k) {
-        const std::int64_t i = dx + (slot.places[k] & kBucketMask);
-        const std::int64_t j = dy + (slot.places[k] >> kBucketBits);
-        if (i < 0 || i >= width || j < 0 || j >= height) continue;
-        if (((i | j) & (spacing - 1)) != 0) continue;
-        plane.At(spacing == 1 ? i : i >> 1, spacing == 1 ? j : j >> 1) +=
-            slot.values[k];
-      }
+      AddBucket(slot, bucket - slot.buckets.begin(), x, y, spacing, columns,
+                rows, plane);
     }
+  }
+}
+
+void CorrectionTable::AddBucket(const Slot& slot, std::ptrdiff_t index,
+                                std::int64_t x, std::int64_t y,
+                                std::int64_t spacing, int columns, int rows,
+                                GridView plane) {
+  const Bucket* bucket = &slot.buckets[static_cast<std::size_t>(index)];
+  const std::int64_t width = spacing * columns;
+  const std::int64_t height = spacing * rows;
+  const std::int64_t dx = (bucket->key.x << kBucketBits) - x;
+  const std::int64_t dy = (bucket->key.y << kBucketBits) - y;
+  const int shift = spacing == 1 ? 0 : 1;
+  // Most buckets of a tile lie inside it, and all of their points are its own.
+  const bool inside = dx >= 0 && dy >= 0 && dx + kBucketMask < width &&
+                      dy + kBucketMask < height && spacing == 1;
+  for (std::uint64_t k = bucket->first; k < bucket[1].first; ++k) {
+    const std::int64_t i = dx + (slot.places[k] & kBucketMask);
+    const std::int64_t j = dy + (slot.places[k] >> kBucketBits);
+    if (!inside) {
+      if (i < 0 || i >= width || j < 0 || j >= height) continue;
+      if (((i | j) & (spacing - 1)) != 0) continue;
+    }
+    plane.At(i >> shift, j >> shift) += slot.values[k];
   }
 }
 

@@ -11,6 +11,7 @@
 #ifndef TERRANE_CORE_TERRAIN_CORRECTION_TABLE_H_
 #define TERRANE_CORE_TERRAIN_CORRECTION_TABLE_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,10 @@ class CorrectionTable {
   // near the border are kept mirrored that far.
   static constexpr std::int64_t kBeyondBorder = 16;
 
+  // Entries smaller than this (sigma = 1) are left out: no float of P's size
+  // holds them.
+  static constexpr float kLeastValue = 0x1p-32f;
+
   // Filled in two passes, so that 10^8 entries never exist twice: every point
   // is announced, then, after Allocate, added. The passes may differ in order.
   class Builder {
@@ -40,7 +45,7 @@ class CorrectionTable {
     void Allocate();
     void Add(std::uint32_t slot, int level, LatticePoint point, float value);
 
-    // Nothing may be missing.
+    // What was announced must have been added.
     CorrectionTable Build() &&;
 
    private:
@@ -70,6 +75,10 @@ class CorrectionTable {
  private:
   struct Bucket;
   struct Slot;
+  static void AddBucket(const Slot& slot, std::ptrdiff_t index, std::int64_t x,
+                        std::int64_t y, std::int64_t spacing, int columns,
+                        int rows, GridView plane);
+
   std::vector<Slot> slots_;  // by slot; none behind the last used
 };
 

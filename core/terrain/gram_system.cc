@@ -50,9 +50,11 @@ struct Stopped {};
 
 // --- The matrix -------------------------------------------------------------
 
-void GramMatrix::ReserveRows(std::size_t rows) {
+void GramMatrix::Reserve(std::size_t rows, std::size_t elements) {
   row_ends_.reserve(rows);
   own_.reserve(rows);
+  columns_.reserve(elements);
+  values_.reserve(elements);
 }
 
 void GramMatrix::Transposed(std::span<const double> x,

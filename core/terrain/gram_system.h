@@ -39,7 +39,7 @@ class GramMatrix {
     row_ends_.push_back(columns_.size());
     own_.push_back(own);
   }
-  void ReserveRows(std::size_t rows);
+  void Reserve(std::size_t rows, std::size_t elements);
 
   std::size_t rows() const { return row_ends_.size(); }
   // out = W' x, one value a column.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -153,9 +154,48 @@ TEST(AncestorWalkTest, RadiusHoldsEveryAncestor) {
         }
       }
     }
-    printf("farthest %g\n", farthest);
     EXPECT_LE(farthest, AncestorWalk::Radius(source));
-    EXPECT_GE(farthest, 0.8 * AncestorWalk::Radius(source));
+    EXPECT_GE(farthest, 0.9 * AncestorWalk::Radius(source));
+  }
+}
+
+TEST(AncestorWalkTest, SeparatedPointsHaveNoAncestorThatCountsInCommon) {
+  constexpr int kLevel = 12;
+  constexpr int kUp = 5;
+  for (const FractalSource source :
+       {FractalSource::kMidpoint, FractalSource::kSubdivision}) {
+    AncestorWalk walk(source, 2, {});
+    const auto row = [&](LatticePoint point) {
+      std::map<std::pair<std::int64_t, std::int64_t>, double> weights;
+      std::vector<Ancestor> ancestors;
+      walk.Start(kLevel, point);
+      while (walk.Next(&ancestors)) {
+        if (walk.level() != kLevel - kUp) continue;
+        for (const Ancestor& a : ancestors) {
+          weights[{a.point.x, a.point.y}] = a.weight;
+        }
+      }
+      return weights;
+    };
+    const auto common = [&](double separation, std::int64_t k) {
+      const LatticePoint a = {k * 7919 % 4096, k * 104729 % 4096};
+      const auto apart = static_cast<std::int64_t>(separation * (1 << kUp));
+      const auto first = row(a);
+      const auto second = row({a.x + apart, a.y + k * 31 % apart});
+      double sum = 0;
+      for (const auto& [point, weight] : first) {
+        const auto found = second.find(point);
+        if (found != second.end()) sum += weight * found->second;
+      }
+      return std::fabs(sum);
+    };
+    double counted = 0;
+    for (std::int64_t k = 0; k < 200; ++k) {
+      EXPECT_LT(common(AncestorWalk::Separation(source), k), 0x1p-28);
+      counted =
+          std::max(counted, common(0.75 * AncestorWalk::Separation(source), k));
+    }
+    EXPECT_GT(counted, 0x1p-28);
   }
 }
 
