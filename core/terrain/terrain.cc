@@ -387,7 +387,7 @@ Terrain::Terrain(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 Terrain::~Terrain() = default;
 
 absl::StatusOr<std::shared_ptr<const Terrain>> Terrain::Create(
-    TerrainSpec spec) {
+    TerrainSpec spec, const Preparation&) {
   absl::StatusOr<std::unique_ptr<const Impl>> impl =
       Impl::Create(std::move(spec));
   if (!impl.ok()) return impl.status();
@@ -442,6 +442,10 @@ std::optional<double> Terrain::DeviationBound() const {
   if (bound < 0) return std::nullopt;
   return bound;
 }
+
+std::optional<SpotReport> Terrain::spots() const { return std::nullopt; }
+std::int64_t Terrain::MemoryBytes() const { return 0; }
+PreparationCost Terrain::EstimatePreparation(const TerrainSpec&) { return {}; }
 
 HeightRange Terrain::LikelyRange() const { return impl_->LikelyRange(); }
 

@@ -14,6 +14,7 @@
 #define TERRANE_CORE_TERRAIN_TERRAIN_H_
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -55,14 +56,42 @@ struct TileRequest {
   Window window;
 };
 
+// How a preparation is watched and ended.
+struct Preparation {
+  // Polled at least every few milliseconds; Create answers CANCELLED.
+  std::stop_token stop;
+  // Called with the share of the work that is done, 0 to 1, never falling, from
+  // the thread that prepares. May be empty.
+  std::function<void(double)> progress;
+};
+
+// What became of the spot heights.
+struct SpotReport {
+  std::int64_t spots = 0;   // lattice points that are conditioned
+  int level = 0;            // that they snapped to
+  double largest_move = 0;  // by snapping, in world units
+  std::int64_t merged = 0;  // rows at the lattice point of another row
+};
+
+// What making a spec ready takes, at most.
+struct PreparationCost {
+  std::int64_t spots = 0;
+  double cpu_seconds = 0;
+  std::int64_t memory_bytes = 0;
+};
+
 class Terrain {
  public:
   // Validates the spec, fills in what is not set and prepares: calibrates a
-  // refinement, snaps and indexes constraints, prefilters rasters. Errors:
-  // INVALID_ARGUMENT with violations (field paths relative to the recipe, such
-  // as "roughness").
+  // refinement, snaps and indexes constraints, prefilters rasters, conditions
+  // the process on the spot heights. Errors: INVALID_ARGUMENT with violations
+  // (field paths relative to the recipe, such as "roughness" or
+  // "spots.points[3]"), CANCELLED.
   static absl::StatusOr<std::shared_ptr<const Terrain>> Create(
-      TerrainSpec spec);
+      TerrainSpec spec, const Preparation& preparation = {});
+
+  // Of a valid spec, without preparing it.
+  static PreparationCost EstimatePreparation(const TerrainSpec& spec);
 
   ~Terrain();
   Terrain(const Terrain&) = delete;
@@ -104,6 +133,12 @@ class Terrain {
   absl::Status GenerateAt(int level, std::span<const Point2> points,
                           std::stop_token stop, TileScratch* scratch,
                           std::span<float> out) const;
+
+  // What became of the spot heights; nothing without any.
+  std::optional<SpotReport> spots() const;
+
+  // Memory that the terrain holds beyond its spec.
+  std::int64_t MemoryBytes() const;
 
   // Lattice points that generating the window takes, ancestors included.
   std::int64_t GeneratedPoints(const TileRequest& request) const;
