@@ -108,7 +108,7 @@ absl::Status LocalBackend::StreamTiles(const v1::StreamTilesRequest& request,
                                        const OnTile& on_tile,
                                        std::stop_token stop) {
   const absl::StatusOr<std::shared_ptr<const server::TileJob>> job =
-      actor_->OpenTiles(request);
+      actor_->OpenTiles(request, stop);
   if (!job.ok()) return job.status();
   TileVerifier verifier(request);
   absl::Status status = verifier.CheckHeader((*job)->header());
@@ -153,7 +153,7 @@ absl::StatusOr<v1::GetServerInfoResponse> LocalBackend::GetServerInfo(
 
 absl::StatusOr<std::string> LocalBackend::UploadRaster(
     std::shared_ptr<const core::Raster> raster, std::stop_token) {
-  const std::unique_ptr<server::RasterUpload> upload = actor_->BeginUpload();
+  const std::unique_ptr<server::RasterUpload> upload = actor_->BeginRasterUpload();
   const absl::Status sent = SendRaster(
       *raster,
       [&](const v1::UploadRasterRequest& part) { return upload->Add(part); });

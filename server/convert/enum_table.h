@@ -59,6 +59,13 @@ inline constexpr EnumTable<v1::MacroCombine, core::MacroCombine, 3>
         {v1::MACRO_COMBINE_MINIMUM, core::MacroCombine::kMinimum},
     }};
 
+// Unset says that the core chooses, so there is no row for it.
+inline constexpr EnumTable<v1::DiscreteMethod, core::DiscreteMethod, 2>
+    kDiscreteMethods{{
+        {v1::DISCRETE_METHOD_BUFFER, core::DiscreteMethod::kBuffer},
+        {v1::DISCRETE_METHOD_CONDITION, core::DiscreteMethod::kCondition},
+    }};
+
 // The quantity has no default: an unset one is a violation of its own.
 inline constexpr EnumTable<v1::ConstraintQuantity, core::ConstraintQuantity, 2>
     kConstraintQuantities{{

@@ -26,12 +26,13 @@ using ::testing::HasSubstr;
 class ActorTest : public ::testing::Test {
  protected:
   std::shared_ptr<const TileJob> Open(const std::string& json) {
-    auto job = actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json));
+    auto job = actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json), {});
     EXPECT_TRUE(job.ok()) << job.status();
     return job.ok() ? *std::move(job) : nullptr;
   }
   absl::Status OpenError(const std::string& json) {
-    return actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json)).status();
+    return actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json), {})
+        .status();
   }
   v1::HeightTile Make(const TileJob& job, std::int64_t index) {
     v1::HeightTile tile;
@@ -47,7 +48,7 @@ class ActorTest : public ::testing::Test {
   }
   // Uploads a rough 16 x 13 model with posts 30 apart; its id.
   std::string UploadModel() {
-    const auto upload = actor_->BeginUpload();
+    const auto upload = actor_->BeginRasterUpload();
     EXPECT_TRUE(upload
                     ->Add(FromJson<v1::UploadRasterRequest>(
                         R"({"header": {"width": "16", "height": "13", "frame":
@@ -164,7 +165,7 @@ TEST_F(ActorTest, RecipeAndPresetOfTheSameTerrainHashAlike) {
       R"({"window": {"width": 1, "height": 1}})");
   *by_recipe.mutable_terrain()->mutable_recipe() =
       FindPreset("demo/hills").value()->recipe();
-  const auto from_recipe = actor_->OpenTiles(by_recipe);
+  const auto from_recipe = actor_->OpenTiles(by_recipe, {});
   ASSERT_TRUE(from_recipe.ok());
   const auto from_preset = Open(R"({"terrain": {"preset": "demo/hills"},
     "window": {"width": 1, "height": 1}})");
@@ -190,7 +191,7 @@ TEST_F(ActorTest, ResolvedRecipeGivesTheSameBytes) {
   v1::StreamTilesRequest again;
   *again.mutable_terrain()->mutable_recipe() = job->header().recipe();
   again.set_level(2);
-  const auto resolved = actor_->OpenTiles(again);
+  const auto resolved = actor_->OpenTiles(again, {});
   ASSERT_TRUE(resolved.ok()) << resolved.status();
   EXPECT_EQ((*resolved)->header().SerializeAsString(),
             job->header().SerializeAsString());
@@ -239,7 +240,7 @@ TEST_F(ActorTest, RecipeAndRequestViolationsComeTogether) {
 
 // Some faults show only when the terrain is made.
 TEST_F(ActorTest, ViolationsOfPreparationHaveTheRequestsPath) {
-  const auto upload = actor_->BeginUpload();
+  const auto upload = actor_->BeginRasterUpload();
   ASSERT_TRUE(upload
                   ->Add(FromJson<v1::UploadRasterRequest>(
                       R"({"header": {"width": "2", "height": "2"}})"))
@@ -263,7 +264,7 @@ TEST_F(ActorTest, EstimateIsWhatTheStreamSends) {
           "firstTile": 5, "window": {"width": 100, "height": 70}})");
   const auto estimate = actor_->EstimateTiles(request);
   ASSERT_TRUE(estimate.ok()) << estimate.status();
-  const auto job = *actor_->OpenTiles(request.request());
+  const auto job = *actor_->OpenTiles(request.request(), {});
   std::int64_t bytes = 0;
   for (std::int64_t i = job->first(); i < job->total(); ++i) {
     bytes += static_cast<std::int64_t>(Make(*job, i).data().size());
@@ -358,7 +359,7 @@ TEST_F(ActorTest, EveryPresetCanBeGenerated) {
     *request.mutable_terrain() = choice;
     request.mutable_window()->set_width(2);
     request.mutable_window()->set_height(2);
-    const auto job = actor_->OpenTiles(request);
+    const auto job = actor_->OpenTiles(request, {});
     ASSERT_TRUE(job.ok()) << name << ": " << job.status();
     Make(**job, 0);
   }
