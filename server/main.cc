@@ -70,10 +70,9 @@ std::string Footer() {
          std::to_string(limits.recipe.max_continuous_constraints) +
          " continuous constraints, " +
          std::to_string(limits.recipe.max_vertices) + " vertices, " +
-         std::to_string(limits.recipe.max_macro_parts) + " macro parts, " +
-         std::to_string(limits.recipe.max_spots) + " spot heights (" +
+         std::to_string(limits.recipe.max_macro_parts) + " macro parts,\n  " +
          std::to_string(limits.recipe.max_inline_spots) +
-         " of them in the\n  recipe itself, the rest as a table) a recipe\n\n"
+         " spot points and as many lines a recipe; more as a table\n\n"
          "Examples:\n"
          "  terrane-server --listen 127.0.0.1:0\n"
          "  terrane-server --workers 4 --log-format json 2>server.log\n"
@@ -207,6 +206,9 @@ int Main(int argc, char** argv) {
   }
   flags.server.limits.raster_store_bytes = flags.raster_store_mib << 20;
   flags.server.limits.prepared_bytes = flags.prepared_mib << 20;
+  flags.server.limits.recipe.max_inline_spots =
+      std::min(flags.server.limits.recipe.max_inline_spots,
+               flags.server.limits.recipe.max_spots);
   flags.server.limits.max_raster_samples = std::min(
       flags.server.limits.max_raster_samples,
       flags.server.limits.raster_store_bytes / std::int64_t{sizeof(float)});

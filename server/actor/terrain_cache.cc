@@ -75,6 +75,7 @@ TerrainCache::TerrainCache(std::int64_t max_bytes, Create create)
 TerrainCache::Result TerrainCache::Prepare(
     const v1::TerrainRecipe& recipe, const ReadRecipe& read,
     const core::Preparation& preparation) {
+  if (preparation.stop.stop_requested()) return GaveUp();
   // The coordinate reference system may be the raster's, so it is part of the
   // key.
   const std::string key = RecipeHash(recipe) + read.crs;
