@@ -87,7 +87,7 @@ std::string SpotFile::PlaceOf(std::int64_t source) const {
 absl::StatusOr<SpotFile> ReadSpotFile(const SpotFileOptions& options,
                                       int dimensions) {
   const std::string extension = std::filesystem::path(options.path).extension();
-  absl::StatusOr<SpotFile> spots = extension == ".csv"
+  absl::StatusOr<SpotFile> spots = extension == ".csv" || extension == ".CSV"
                                        ? ReadCsvSpots(options, dimensions)
                                        : ReadSpotLayer(options);
   if (spots.ok() && !options.crs.empty()) spots->crs = options.crs;

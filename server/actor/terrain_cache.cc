@@ -13,6 +13,14 @@ namespace {
 
 // What the smallest terrain takes, so that the bound in bytes is one in number.
 constexpr std::int64_t kEntryBytes = 16 * 1024;
+// Keys are short.
+constexpr std::int64_t kResolvedKeysBytes = std::int64_t{4} << 20;
+
+// The coordinate reference system may be the raster's, so it is part of the
+// key.
+std::string KeyOf(const v1::TerrainRecipe& recipe, const std::string& crs) {
+  return RecipeHash(recipe) + crs;
+}
 
 // What keeping a terrain costs: itself, its rasters and its table, which
 // outlive their place in the stores, and its recipe, as spec and as message.
@@ -70,17 +78,17 @@ class TerrainCache::Caller {
 };
 
 TerrainCache::TerrainCache(std::int64_t max_bytes, Create create)
-    : create_(std::move(create)), kept_(max_bytes) {}
+    : create_(std::move(create)),
+      kept_(max_bytes),
+      resolved_keys_(kResolvedKeysBytes) {}
 
 TerrainCache::Result TerrainCache::Prepare(
     const v1::TerrainRecipe& recipe, const ReadRecipe& read,
     const core::Preparation& preparation) {
   if (preparation.stop.stop_requested()) return GaveUp();
-  // The coordinate reference system may be the raster's, so it is part of the
-  // key.
-  const std::string key = RecipeHash(recipe) + read.crs;
+  const std::string key = KeyOf(recipe, read.crs);
   std::unique_lock lock(mutex_);
-  if (const auto* kept = kept_.Find(key)) return *kept;
+  if (auto kept = FindKept(key)) return kept;
   std::shared_ptr<Making>& entry = making_[key];
   const bool first = entry == nullptr;
   if (first) entry = std::make_shared<Making>();
@@ -94,6 +102,13 @@ TerrainCache::Result TerrainCache::Prepare(
   Finish(key, making.get(), result);
   if (preparation.stop.stop_requested()) return GaveUp();
   return result;
+}
+
+std::shared_ptr<const PreparedTerrain> TerrainCache::FindKept(
+    const std::string& key) {
+  const std::string* resolved = resolved_keys_.Find(key);
+  const auto* kept = kept_.Find(resolved != nullptr ? *resolved : key);
+  return kept != nullptr ? *kept : nullptr;
 }
 
 TerrainCache::Result TerrainCache::Make(const ReadRecipe& read,
@@ -158,12 +173,20 @@ void TerrainCache::Finish(const std::string& key, Making* making,
                           Result result) {
   {
     std::lock_guard lock(mutex_);
-    if (result.ok()) kept_.Insert(key, *result, (*result)->memory_bytes);
+    if (result.ok()) Keep(key, *result);
     making->result = std::move(result);
     making->done = true;
     Forget(key, making);
   }
   changed_.notify_all();
+}
+
+void TerrainCache::Keep(const std::string& key,
+                        const std::shared_ptr<const PreparedTerrain>& made) {
+  const std::string resolved = KeyOf(made->recipe, made->recipe.frame().crs());
+  kept_.Insert(resolved, made, made->memory_bytes);
+  resolved_keys_.Insert(
+      key, resolved, static_cast<std::int64_t>(key.size() + resolved.size()));
 }
 
 std::int64_t TerrainCache::kept_bytes() const {

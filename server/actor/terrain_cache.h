@@ -8,7 +8,9 @@
 // the one that works: it stays as long as another waits, and the work ends when
 // nobody does. Nothing of an ended or failed preparation is kept.
 //
-// Bounded in bytes, least recently used out first; a terrain in use lives on.
+// A terrain is kept under its resolved recipe, which recipes that leave
+// defaults out lead to: asking with the one or the other is the same. Bounded
+// in bytes, least recently used out first; a terrain in use lives on.
 //
 // Threads: every method from any thread.
 #ifndef TERRANE_SERVER_ACTOR_TERRAIN_CACHE_H_
@@ -71,6 +73,8 @@ class TerrainCache {
   };
   class Caller;
 
+  // What is kept for a recipe's key; null when nothing is. Under mutex_.
+  std::shared_ptr<const PreparedTerrain> FindKept(const std::string& key);
   // Does the work, on the thread of its first caller.
   Result Make(const ReadRecipe& read, const core::Preparation& preparation,
               Making* making);
@@ -78,7 +82,10 @@ class TerrainCache {
   Result Await(const core::Preparation& preparation, Making* making);
   void Leave(const std::string& key, Making* making);
   void Finish(const std::string& key, Making* making, Result result);
-  // Takes it out of making_, unless another has its place. Under mutex_.
+  // Both under mutex_.
+  void Keep(const std::string& key,
+            const std::shared_ptr<const PreparedTerrain>& made);
+  // Takes it out of making_, unless another has its place.
   void Forget(const std::string& key, const Making* making);
 
   const Create create_;
@@ -86,6 +93,8 @@ class TerrainCache {
   std::condition_variable_any changed_;
   std::unordered_map<std::string, std::shared_ptr<Making>> making_;
   LruStore<std::shared_ptr<const PreparedTerrain>> kept_;
+  // From the key of a recipe to that of its resolved one.
+  LruStore<std::string> resolved_keys_;
 };
 
 }  // namespace terrane::server

@@ -25,8 +25,7 @@ bool ParseRequest(const std::string& bytes, v1::StreamTilesRequest* request) {
 
 bool IsDocumented(const absl::Status& error) {
   return absl::IsNotFound(error) || absl::IsResourceExhausted(error) ||
-         (absl::IsInvalidArgument(error) &&
-          !core::ViolationsOf(error).empty());
+         (absl::IsInvalidArgument(error) && !core::ViolationsOf(error).empty());
 }
 
 bool PreparationKeepsContract(const v1::TerrainChoice& terrain, Actor* actor) {

@@ -95,6 +95,19 @@ TEST_F(TerrainCacheTest, OtherRecipesDoNotWait) {
   EXPECT_EQ(create_.started, 2);
 }
 
+TEST_F(TerrainCacheTest, ResolvedRecipeIsTheSameTerrain) {
+  create_.released = true;
+  const auto made = Prepare(Recipe(1));
+  ASSERT_TRUE(made.ok());
+  EXPECT_EQ(*Prepare((*made)->recipe), *made);
+  v1::TerrainRecipe spelled = Recipe(1);
+  spelled.set_dimensions(2);
+  EXPECT_EQ((*Prepare(spelled))->recipe_hash, (*made)->recipe_hash);
+  // It was made to find that out, and took the place of the first.
+  EXPECT_EQ(create_.started, 2);
+  EXPECT_EQ(cache_.kept_bytes(), (*made)->memory_bytes);
+}
+
 TEST_F(TerrainCacheTest, LastCallerToGiveUpEndsTheWork) {
   std::stop_source stop;
   auto only = PrepareAside(Recipe(1), {stop.get_token(), {}});
