@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
+#include <functional>
 #include <iostream>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -50,34 +49,50 @@ void WriteLine(const SpotPolyline& line, v1::SpotLine* message) {
   message->set_standard_error(line.standard_error);
 }
 
-// The place in the file of a field such as "terrain.recipe.spots.table[17]";
-// the field itself when it speaks of no row.
-std::string PlaceInFile(const std::string& field, const SpotFile& spots) {
-  const auto index_after = [&](std::string_view name, std::size_t count) {
-    std::size_t index = count;
-    const std::size_t at = field.find(name);
-    if (at == std::string::npos) return index;
-    std::from_chars(field.data() + at + name.size(),
-                    field.data() + field.size(), index);
-    return std::min(index, count);
-  };
-  const std::size_t row = index_after("spots.table[", spots.table.rows());
-  if (row < spots.table.rows()) return spots.PlaceOf(spots.table.source[row]);
-  const std::size_t line = index_after("spots.lines[", spots.lines.size());
-  if (line < spots.lines.size()) {
-    return spots.PlaceOf(spots.lines[line].source);
+// Puts the place in the file where `text` speaks of a row by its path in the
+// request, such as "terrain.recipe.spots.table[17]". `place` answers an empty
+// text for a row that it does not know.
+void NamePlaces(const std::string& path,
+                const std::function<std::string(std::size_t)>& place,
+                std::string* text) {
+  std::size_t at = 0;
+  while ((at = text->find(path, at)) != std::string::npos) {
+    std::size_t row = 0;
+    const char* const end = text->data() + text->size();
+    const auto number =
+        std::from_chars(text->data() + at + path.size(), end, row);
+    const std::string name =
+        number.ec == std::errc() ? place(row) : std::string();
+    if (name.empty()) {
+      at += path.size();
+      continue;
+    }
+    // The whole word, from the request's own path before it to the "]".
+    const std::size_t space = text->find_last_of(' ', at);
+    const std::size_t begin = space == std::string::npos ? 0 : space + 1;
+    const auto after = static_cast<std::size_t>(number.ptr - text->data()) + 1;
+    text->replace(begin, after - begin, name);
+    at = begin + name.size();
   }
-  return field;
 }
 
-absl::Status NameRows(const absl::Status& status, const SpotFile& spots) {
-  const std::vector<core::Violation> found = core::ViolationsOf(status);
-  if (found.empty()) return status;
-  core::Violations violations;
-  for (const core::Violation& one : found) {
-    violations.Add(PlaceInFile(one.field, spots), one.description);
-  }
-  return violations.ToStatus();
+std::string WithPlaces(std::string text, const SpotFile& spots) {
+  const SpotTable& table = spots.table;
+  NamePlaces(
+      "spots.table[",
+      [&](std::size_t row) {
+        return row < table.rows() ? spots.PlaceOf(table.source[row]) : "";
+      },
+      &text);
+  NamePlaces(
+      "spots.lines[",
+      [&](std::size_t line) {
+        return line < spots.lines.size()
+                   ? spots.PlaceOf(spots.lines[line].source)
+                   : "";
+      },
+      &text);
+  return text;
 }
 
 }  // namespace
@@ -111,6 +126,18 @@ absl::StatusOr<std::shared_ptr<const SpotFile>> UseSpots(
   return spots;
 }
 
+absl::Status NameRows(const absl::Status& status,
+                      const ChosenTerrain& terrain) {
+  const std::vector<core::Violation> found = core::ViolationsOf(status);
+  if (found.empty() || terrain.spots == nullptr) return status;
+  core::Violations violations;
+  for (const core::Violation& one : found) {
+    violations.Add(WithPlaces(one.field, *terrain.spots),
+                   WithPlaces(one.description, *terrain.spots));
+  }
+  return violations.ToStatus();
+}
+
 absl::StatusOr<std::optional<v1::SpotReport>> PrepareSpots(
     const ChosenTerrain& terrain, ProgressMode progress, Backend* backend,
     std::stop_token stop) {
@@ -120,11 +147,7 @@ absl::StatusOr<std::optional<v1::SpotReport>> PrepareSpots(
   PreparationProgress shown(progress);
   const absl::StatusOr<v1::PreparedTerrain> prepared = backend->PrepareTerrain(
       request, [&](double fraction) { shown.Show(fraction); }, stop);
-  if (!prepared.ok()) {
-    return terrain.spots == nullptr
-               ? prepared.status()
-               : NameRows(prepared.status(), *terrain.spots);
-  }
+  if (!prepared.ok()) return NameRows(prepared.status(), terrain);
   if (!prepared->has_spots()) return std::nullopt;
   return prepared->spots();
 }

@@ -24,8 +24,12 @@ absl::StatusOr<std::shared_ptr<const SpotFile>> UseSpots(
     const SpotFileOptions& options, int level, Backend* backend,
     std::stop_token stop, v1::TerrainRecipe* recipe);
 
+// An error of a call in which rows of the file's table and its lines are named
+// by their place in the file.
+absl::Status NameRows(const absl::Status& status, const ChosenTerrain& terrain);
+
 // Makes a terrain with spot heights ready, and shows how far that is; nothing
-// to do for one without. Errors name the rows of the file.
+// to do for one without. Errors are named by NameRows.
 absl::StatusOr<std::optional<v1::SpotReport>> PrepareSpots(
     const ChosenTerrain& terrain, ProgressMode progress, Backend* backend,
     std::stop_token stop);

@@ -113,13 +113,16 @@ absl::StatusOr<v1::StreamTilesRequest> MakeRequest(
   return request;
 }
 
-int PrintEstimate(const v1::StreamTilesRequest& request, bool json,
-                  Backend* backend, std::stop_token stop) {
+int PrintEstimate(const v1::StreamTilesRequest& request,
+                  const ChosenTerrain& terrain, bool json, Backend* backend,
+                  std::stop_token stop) {
   v1::EstimateTilesRequest ask;
   *ask.mutable_request() = request;
   const absl::StatusOr<v1::EstimateTilesResponse> estimate =
       backend->EstimateTiles(ask, stop);
-  if (!estimate.ok()) return ReportStatus(estimate.status());
+  if (!estimate.ok()) {
+    return ReportStatus(NameRows(estimate.status(), terrain));
+  }
   if (json) {
     std::cout << JsonLine(*estimate) << '\n';
     return kExitOk;
@@ -209,7 +212,7 @@ int Run(const TerrainCommand& command, std::stop_token stop) {
       MakeRequest(command, *terrain);
   if (!request.ok()) return Usage(request.status());
   if (command.dry_run) {
-    return PrintEstimate(*request, command.json, backend.get(), stop);
+    return PrintEstimate(*request, *terrain, command.json, backend.get(), stop);
   }
 
   const auto start = std::chrono::steady_clock::now();
