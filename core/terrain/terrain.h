@@ -14,7 +14,6 @@
 #define TERRANE_CORE_TERRAIN_TERRAIN_H_
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,15 +22,11 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "core/grid/lattice_window.h"
+#include "core/terrain/height_range.h"
+#include "core/terrain/preparation.h"
 #include "core/terrain/terrain_spec.h"
 
 namespace terrane::core {
-
-// A closed range of heights.
-struct HeightRange {
-  float minimum = 0;
-  float maximum = 0;
-};
 
 // Working memory of one generating thread. Grows to what the largest tile needs
 // and stays there.
@@ -54,30 +49,6 @@ struct TileRequest {
   int level = 0;
   Sampling sampling = Sampling::kPoint;
   Window window;
-};
-
-// How a preparation is watched and ended.
-struct Preparation {
-  // Polled at least every few milliseconds; Create answers CANCELLED.
-  std::stop_token stop;
-  // Called with the share of the work that is done, 0 to 1, never falling, from
-  // the thread that prepares. May be empty.
-  std::function<void(double)> progress;
-};
-
-// What became of the spot heights.
-struct SpotReport {
-  std::int64_t spots = 0;   // lattice points that are conditioned
-  int level = 0;            // that they snapped to
-  double largest_move = 0;  // by snapping, in world units
-  std::int64_t merged = 0;  // rows at the lattice point of another row
-};
-
-// What making a spec ready takes, at most.
-struct PreparationCost {
-  std::int64_t spots = 0;
-  double cpu_seconds = 0;
-  std::int64_t memory_bytes = 0;
 };
 
 class Terrain {
