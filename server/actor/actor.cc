@@ -7,6 +7,7 @@
 #include "core/base/simd_target.h"
 #include "core/base/violations.h"
 #include "core/terrain/spec_checks.h"
+#include "core/terrain/spot_heights.h"
 #include "server/actor/cost_meter.h"
 #include "server/actor/error_reason.h"
 #include "server/actor/presets.h"
@@ -208,10 +209,7 @@ absl::StatusOr<v1::PreparedTerrain> TerrainActor::PrepareTerrain(
 // lattice points but adds none, so an estimate counts the same.
 ReadChoice WithoutConditioning(ReadChoice choice) {
   core::TerrainSpec& spec = choice.read.spec;
-  const bool buffers = spec.spots.empty() &&
-                       spec.source == core::FractalSource::kMidpoint &&
-                       spec.discrete_method != core::DiscreteMethod::kCondition;
-  if (!buffers) {
+  if (core::ConditionsDiscrete(spec)) {
     spec.discrete_constraints.clear();
     spec.discrete_method.reset();
     choice.recipe.clear_discrete_constraints();

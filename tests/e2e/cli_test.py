@@ -334,10 +334,10 @@ class CliTest(unittest.TestCase):
         self.assertFalse(out.exists())
 
     def test_profile_and_heights_meet_spots(self):
-        spots = self.write_spots("line.csv", [(1, 7.5), (2.5, -3)], header="x,z")
+        spots = self.write_spots("line.csv", [(1, 4.5), (2.5, 5)], header="x,z")
         lines = self.ask("profile", "--preset", "fbm/fig04b", "--level", "6", "--spots", spots).stdout.splitlines()[1:]
         profile = {float(x): float(height) for x, height, _ in (line.split(",") for line in lines)}
-        self.assertEqual((profile[1.0], profile[2.5]), (7.5, -3))
+        self.assertEqual((profile[1.0], profile[2.5]), (4.5, 5))
         spots = self.write_spots("plane.csv", [(3, 4, 11.5)])
         lines = self.ask("heights", "--spots", spots, input="3,4\n").stdout.splitlines()
         self.assertEqual(lines[1], "3,4,11.5")
