@@ -59,11 +59,12 @@ inline constexpr EnumTable<v1::MacroCombine, core::MacroCombine, 3>
         {v1::MACRO_COMBINE_MINIMUM, core::MacroCombine::kMinimum},
     }};
 
-// Unset says that the core chooses, so there is no row for it.
+// Unset leaves the choice to the core, so no row stands for it; the first is
+// what every recipe may have.
 inline constexpr EnumTable<v1::DiscreteMethod, core::DiscreteMethod, 2>
     kDiscreteMethods{{
-        {v1::DISCRETE_METHOD_BUFFER, core::DiscreteMethod::kBuffer},
         {v1::DISCRETE_METHOD_CONDITION, core::DiscreteMethod::kCondition},
+        {v1::DISCRETE_METHOD_BUFFER, core::DiscreteMethod::kBuffer},
     }};
 
 // The quantity has no default: an unset one is a violation of its own.
