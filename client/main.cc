@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   AddProfileCommand(&app, &action);
   AddHeightsCommand(&app, &action);
   AddRenderCommand(&app, &action);
+  AddVerifyCommand(&app, &action);
   AddPresetsCommand(&app, &action);
   AddInfoCommand(&app, &action);
   try {

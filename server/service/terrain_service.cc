@@ -1,5 +1,6 @@
 #include "server/service/terrain_service.h"
 
+#include "server/service/prepare_call.h"
 #include "server/service/tile_stream.h"
 #include "server/service/unary_call.h"
 
@@ -8,6 +9,12 @@ namespace terrane::server {
 grpc::ServerWriteReactor<grpc::ByteBuffer>* TerrainServiceImpl::StreamTiles(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
   return TileStream::Start(parts_, context, *request);
+}
+
+grpc::ServerWriteReactor<v1::PrepareTerrainResponse>*
+TerrainServiceImpl::PrepareTerrain(grpc::CallbackServerContext* context,
+                                   const v1::PrepareTerrainRequest* request) {
+  return PrepareCall::Start(parts_, context, request);
 }
 
 grpc::ServerUnaryReactor* TerrainServiceImpl::GetProfile(

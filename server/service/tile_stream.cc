@@ -90,7 +90,7 @@ absl::Status TileStream::Open() {
     return absl::InvalidArgumentError(
         "the request is not a StreamTilesRequest");
   }
-  auto job = parts_.actor->OpenTiles(request);
+  auto job = parts_.actor->OpenTiles(request, stop_.get_token());
   if (!job.ok()) return job.status();
   job_ = *std::move(job);
   next_tile_ = job_->first();

@@ -1,5 +1,6 @@
-// Parse, validate and price a StreamTiles request, whatever the bytes: it never
-// crashes, and an error is always one that the API documents.
+// Parse, validate and price a StreamTiles request, and make its terrain ready
+// when that is cheap, whatever the bytes: it never crashes, and an error is
+// always one that the API documents.
 //
 // Built as a libFuzzer target (TERRANE_FUZZERS, Clang; the bytes are a
 // serialized request or, when they start with '{', protobuf JSON) and, in every
@@ -22,21 +23,45 @@ bool ParseRequest(const std::string& bytes, v1::StreamTilesRequest* request) {
   return google::protobuf::util::JsonStringToMessage(bytes, request).ok();
 }
 
-// False when the answer breaks the contract.
-bool EstimateKeepsContract(const std::string& bytes) {
+bool IsDocumented(const absl::Status& error) {
+  return absl::IsNotFound(error) || absl::IsResourceExhausted(error) ||
+         (absl::IsInvalidArgument(error) && !core::ViolationsOf(error).empty());
+}
+
+bool PreparationKeepsContract(const v1::TerrainChoice& terrain, Actor* actor) {
+  v1::PrepareTerrainRequest request;
+  *request.mutable_terrain() = terrain;
+  double last = 0;
+  bool rises = true;
+  const auto prepared = actor->PrepareTerrain(
+      request,
+      [&](double fraction) {
+        rises = rises && fraction >= last && fraction <= 1;
+        last = fraction;
+      },
+      {});
+  if (!prepared.ok()) return IsDocumented(prepared.status());
+  return rises && prepared->memory_bytes() >= 0 &&
+         !prepared->recipe_hash().empty();
+}
+
+// False when an answer breaks the contract.
+bool RequestKeepsContract(const std::string& bytes) {
   static const std::unique_ptr<Actor> actor = MakeActor({}, 1);
+  constexpr double kCheapSeconds = 0.05;
   v1::EstimateTilesRequest request;
   if (!ParseRequest(bytes, request.mutable_request())) return true;
   const auto estimate = actor->EstimateTiles(request);
-  if (!estimate.ok()) {
-    return absl::IsNotFound(estimate.status()) ||
-           (absl::IsInvalidArgument(estimate.status()) &&
-            !core::ViolationsOf(estimate.status()).empty());
+  if (!estimate.ok()) return IsDocumented(estimate.status());
+  if (estimate->tiles() < 0 || estimate->samples() < 0 ||
+      estimate->samples() > (std::int64_t{1} << 36) ||
+      estimate->generated_points() < estimate->samples() ||
+      !(estimate->cpu_seconds() >= 0) || !(estimate->prepare_seconds() >= 0) ||
+      estimate->prepare_bytes() < 0) {
+    return false;
   }
-  return estimate->tiles() >= 0 && estimate->samples() >= 0 &&
-         estimate->samples() <= (std::int64_t{1} << 36) &&
-         estimate->generated_points() >= estimate->samples() &&
-         estimate->cpu_seconds() >= 0;
+  return estimate->prepare_seconds() > kCheapSeconds ||
+         PreparationKeepsContract(request.request().terrain(), actor.get());
 }
 
 }  // namespace terrane::server
@@ -46,7 +71,7 @@ bool EstimateKeepsContract(const std::string& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  if (!terrane::server::EstimateKeepsContract(bytes)) std::abort();
+  if (!terrane::server::RequestKeepsContract(bytes)) std::abort();
   return 0;
 }
 
@@ -67,7 +92,7 @@ TEST(RequestFuzzTest, CorpusKeepsTheContract) {
        std::filesystem::directory_iterator(TERRANE_REQUEST_CORPUS)) {
     std::ostringstream bytes;
     bytes << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-    EXPECT_TRUE(EstimateKeepsContract(bytes.str())) << entry.path().filename();
+    EXPECT_TRUE(RequestKeepsContract(bytes.str())) << entry.path().filename();
     ++seeds;
   }
   EXPECT_GE(seeds, 10);

@@ -15,6 +15,7 @@
 #include "server/service/server.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
+#include "terrane/v1/spot_table.grpc.pb.h"
 #include "terrane/v1/terrain.grpc.pb.h"
 
 namespace terrane::server {
@@ -35,6 +36,7 @@ class Served {
         grpc::InsecureChannelCredentials(), ClientArguments());
     terrain = v1::TerrainService::NewStub(channel_);
     raster = v1::RasterService::NewStub(channel_);
+    spot_table = v1::SpotTableService::NewStub(channel_);
     info = v1::InfoService::NewStub(channel_);
   }
 
@@ -48,6 +50,7 @@ class Served {
 
   std::unique_ptr<v1::TerrainService::Stub> terrain;
   std::unique_ptr<v1::RasterService::Stub> raster;
+  std::unique_ptr<v1::SpotTableService::Stub> spot_table;
   std::unique_ptr<v1::InfoService::Stub> info;
 
  private:
