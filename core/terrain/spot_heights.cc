@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "core/base/violations.h"
+#include "core/grid/z_curve.h"
 #include "core/noise/counter_hash.h"
 #include "core/terrain/spec_checks.h"
 
@@ -66,16 +67,6 @@ struct PointHash {
   }
 };
 
-// The bits of `x` with a 0 between each two.
-std::uint64_t Spread(std::uint32_t x) {
-  std::uint64_t bits = x;
-  bits = (bits | bits << 16) & 0x0000FFFF0000FFFFull;
-  bits = (bits | bits << 8) & 0x00FF00FF00FF00FFull;
-  bits = (bits | bits << 4) & 0x0F0F0F0F0F0F0F0Full;
-  bits = (bits | bits << 2) & 0x3333333333333333ull;
-  return (bits | bits << 1) & 0x5555555555555555ull;
-}
-
 // Sorts spots along a Z curve: neighbours share ancestors, and what they share
 // is in the cache when they follow each other.
 void SortAlongCurve(std::vector<Spot>* spots) {
@@ -90,8 +81,8 @@ void SortAlongCurve(std::vector<Spot>* spots) {
   }
   const double scale = side > 0 ? 4294967295.0 / side : 0;
   const auto code = [&](const Spot& spot) {
-    return Spread(static_cast<std::uint32_t>((spot.u - u0) * scale)) |
-           Spread(static_cast<std::uint32_t>((spot.v - v0) * scale)) << 1;
+    return ZCurveCode(static_cast<std::uint32_t>((spot.u - u0) * scale),
+                      static_cast<std::uint32_t>((spot.v - v0) * scale));
   };
   std::stable_sort(
       spots->begin(), spots->end(),
