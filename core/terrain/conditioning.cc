@@ -428,16 +428,17 @@ absl::StatusOr<CorrectionTable> ConditionProcess(
 
 PreparationCost ConditioningCost(FractalSource source, int dimensions,
                                  std::int64_t spots, int level) {
-  // Ancestors of a spot in one level, and what each takes: measured by
-  // tests/bench/conditioning_bench.
+  // A little more than tests/bench/core_bench (prepare/spots) measures.
+  constexpr double kSecondsASpot = 8e-5;
+  constexpr double kSecondsAnAncestor = 5e-7;
+  constexpr double kBytesASpot = 1500;
+  constexpr double kBytesAnAncestor = 25;
+  const auto count = static_cast<double>(spots);
   const double ancestors =
-      dimensions == 1 ? 3
-                      : (source == FractalSource::kSubdivision ? 40.0 : 8.0);
-  constexpr double kSecondsEach = 5e-7;
-  constexpr double kBytesEach = 24;
-  const double entries = static_cast<double>(spots) * (level + 1.0) * ancestors;
-  return {spots, entries * kSecondsEach,
-          static_cast<std::int64_t>(entries * kBytesEach)};
+      count * (level + 1.0) * AncestorsPerLevel(source, dimensions);
+  return {spots, count * kSecondsASpot + ancestors * kSecondsAnAncestor,
+          static_cast<std::int64_t>(count * kBytesASpot +
+                                    ancestors * kBytesAnAncestor)};
 }
 
 }  // namespace terrane::core

@@ -39,6 +39,10 @@ constexpr int kMostIterations = 2000;
 constexpr double kTolerance = 1e-9;
 constexpr int kTypicalProducts = 20;
 
+// Share of the progress that is done with the preconditioner.
+constexpr double kPreconditioned = 0.3;
+constexpr std::size_t kSpotsBetweenReports = 256;
+
 // Good enough (sigma = 1): below what a float of P's size holds.
 constexpr double kGoodResidual = 3e-8;
 constexpr int kMostRounds = 5;
@@ -112,8 +116,9 @@ class GramOperator : public Eigen::EigenBase<GramOperator> {
     if (preparation_.stop.stop_requested()) throw Stopped();
     if (preparation_.progress) {
       // How many there will be is not known: about twice kTypicalProducts.
-      preparation_.progress(static_cast<double>(products_) /
-                            (products_ + kTypicalProducts));
+      const double share =
+          static_cast<double>(products_) / (products_ + kTypicalProducts);
+      preparation_.progress(kPreconditioned + (1 - kPreconditioned) * share);
     }
     ++products_;
     Vector product(x.size());
@@ -207,7 +212,7 @@ class NeighbourInverse {
 
   NeighbourInverse() = default;
   NeighbourInverse(std::span<const GramPlace> places, double roughness,
-                   const std::stop_token& stop);
+                   const Preparation& preparation);
 
   // Eigen's protocol; everything is done by then.
   template <typename Matrix>
@@ -237,7 +242,7 @@ std::vector<std::uint32_t> ShuffledOrder(std::size_t size) {
 
 NeighbourInverse::NeighbourInverse(std::span<const GramPlace> places,
                                    double roughness,
-                                   const std::stop_token& stop) {
+                                   const Preparation& preparation) {
   const Correlation correlation(roughness);
   std::vector<Eigen::Triplet<double>> elements;
   elements.reserve(places.size() * (kNeighbours + 1));
@@ -245,7 +250,11 @@ NeighbourInverse::NeighbourInverse(std::span<const GramPlace> places,
   std::vector<TreeValue> found;
   std::vector<std::uint32_t> ids;
   for (const std::uint32_t k : ShuffledOrder(places.size())) {
-    if (stop.stop_requested()) throw Stopped();
+    if (preparation.stop.stop_requested()) throw Stopped();
+    if (preparation.progress && tree.size() % kSpotsBetweenReports == 0) {
+      preparation.progress(kPreconditioned * static_cast<double>(tree.size()) /
+                           static_cast<double>(places.size()));
+    }
     const TreePoint here(places[k].u, places[k].v);
     found.clear();
     tree.query(bg::index::nearest(here, kNeighbours),
@@ -303,8 +312,7 @@ absl::StatusOr<GramSolution> SolveGram(const GramMatrix& matrix,
     solver.setMaxIterations(kMostIterations);
     solver.setTolerance(kTolerance);
     solver.compute(gram);
-    solver.preconditioner() =
-        NeighbourInverse(places, roughness, preparation.stop);
+    solver.preconditioner() = NeighbourInverse(places, roughness, preparation);
     // The residual that the iteration carries along drifts from the true one;
     // starting again from the true one mends that.
     for (int round = 0; round < kMostRounds; ++round) {
