@@ -15,6 +15,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/spot_table.h"
 #include "core/grid/raster.h"
 #include "terrane/v1/info.pb.h"
 #include "terrane/v1/raster.pb.h"
@@ -33,6 +34,8 @@ using OnTile = std::function<absl::Status(const v1::HeightTile&)>;
 using OnSurfaceHeader = std::function<absl::Status(const v1::SurfaceHeader&)>;
 using OnSurfaceTile =
     std::function<absl::Status(const v1::StreamSurfaceResponse&)>;
+// Takes the share of a preparation that is done, 0 to 1.
+using OnPrepareProgress = std::function<void(double)>;
 
 class Backend {
  public:
@@ -44,6 +47,10 @@ class Backend {
                                    const OnHeader& on_header,
                                    const OnTile& on_tile,
                                    std::stop_token stop) = 0;
+  // Progress starts again from 0 when a lost server's work is done again.
+  virtual absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(
+      const v1::PrepareTerrainRequest& request,
+      const OnPrepareProgress& on_progress, std::stop_token stop) = 0;
   virtual absl::StatusOr<v1::GetProfileResponse> GetProfile(
       const v1::GetProfileRequest& request, std::stop_token stop) = 0;
   virtual absl::StatusOr<v1::GetHeightsResponse> GetHeights(
@@ -71,6 +78,10 @@ class Backend {
       std::shared_ptr<const core::Raster> raster, std::stop_token stop) = 0;
   virtual absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest& request, std::stop_token stop) = 0;
+
+  // The same for a table of spot heights.
+  virtual absl::StatusOr<std::string> UploadSpotTable(
+      std::shared_ptr<const SpotTable> table, std::stop_token stop) = 0;
 };
 
 }  // namespace terrane::client

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/raster_upload.h"
+#include "client/spot_upload.h"
 #include "client/surface_verifier.h"
 #include "client/tile_verifier.h"
 #include "core/terrain/terrain.h"
@@ -135,7 +136,7 @@ absl::Status LocalBackend::StreamTiles(const v1::StreamTilesRequest& request,
                                        const OnTile& on_tile,
                                        std::stop_token stop) {
   const absl::StatusOr<std::shared_ptr<const server::TileJob>> job =
-      actor_->OpenTiles(request);
+      actor_->OpenTiles(request, stop);
   if (!job.ok()) return job.status();
   TileVerifier verifier(request);
   absl::Status status = verifier.CheckHeader((*job)->header());
@@ -168,6 +169,12 @@ absl::Status LocalBackend::StreamSurface(
         return (*job)->MakeTile(index, std::move(stopped), tile);
       },
       threads_, &verifier, on_tile, std::move(stop));
+}
+
+absl::StatusOr<v1::PreparedTerrain> LocalBackend::PrepareTerrain(
+    const v1::PrepareTerrainRequest& request,
+    const OnPrepareProgress& on_progress, std::stop_token stop) {
+  return actor_->PrepareTerrain(request, on_progress, stop);
 }
 
 absl::StatusOr<v1::GetProfileResponse> LocalBackend::GetProfile(
@@ -207,7 +214,8 @@ absl::StatusOr<v1::GetSurfacePresetResponse> LocalBackend::GetSurfacePreset(
 
 absl::StatusOr<std::string> LocalBackend::UploadRaster(
     std::shared_ptr<const core::Raster> raster, std::stop_token) {
-  const std::unique_ptr<server::RasterUpload> upload = actor_->BeginUpload();
+  const std::unique_ptr<server::RasterUpload> upload =
+      actor_->BeginRasterUpload();
   const absl::Status sent = SendRaster(
       *raster,
       [&](const v1::UploadRasterRequest& part) { return upload->Add(part); });
@@ -220,6 +228,20 @@ absl::StatusOr<std::string> LocalBackend::UploadRaster(
 absl::StatusOr<v1::GetRasterResponse> LocalBackend::GetRaster(
     const v1::GetRasterRequest& request, std::stop_token) {
   return actor_->GetRaster(request);
+}
+
+absl::StatusOr<std::string> LocalBackend::UploadSpotTable(
+    std::shared_ptr<const SpotTable> table, std::stop_token) {
+  const std::unique_ptr<server::SpotTableUpload> upload =
+      actor_->BeginSpotTableUpload();
+  const absl::Status sent =
+      SendSpotTable(*table, [&](const v1::UploadSpotTableRequest& part) {
+        return upload->Add(part);
+      });
+  if (!sent.ok()) return sent;
+  absl::StatusOr<v1::UploadSpotTableResponse> response = upload->Finish();
+  if (!response.ok()) return response.status();
+  return response->table_id();
 }
 
 }  // namespace terrane::client

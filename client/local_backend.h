@@ -22,6 +22,9 @@ class LocalBackend : public Backend {
   absl::Status StreamTiles(const v1::StreamTilesRequest& request,
                            const OnHeader& on_header, const OnTile& on_tile,
                            std::stop_token stop) override;
+  absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(
+      const v1::PrepareTerrainRequest& request,
+      const OnPrepareProgress& on_progress, std::stop_token stop) override;
   absl::StatusOr<v1::GetProfileResponse> GetProfile(
       const v1::GetProfileRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::GetHeightsResponse> GetHeights(
@@ -46,6 +49,8 @@ class LocalBackend : public Backend {
       std::stop_token stop) override;
   absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest& request, std::stop_token stop) override;
+  absl::StatusOr<std::string> UploadSpotTable(
+      std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
 
  private:
   int threads_;

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   AddHeightsCommand(&app, &action);
   AddSurfaceCommand(&app, &action);
   AddRenderCommand(&app, &action);
+  AddVerifyCommand(&app, &action);
   AddPresetsCommand(&app, &action);
   AddInfoCommand(&app, &action);
   try {

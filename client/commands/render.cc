@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 
+#include "client/chosen_spots.h"
 #include "client/commands/command.h"
 #include "client/commands/shared_options.h"
 #include "client/commands/surface_options.h"
@@ -233,10 +234,14 @@ absl::StatusOr<Picture> DrawGenerated(const RenderCommand& command,
                                       std::stop_token stop) {
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
   const absl::StatusOr<ChosenTerrain> terrain =
-      ChooseTerrain(command.terrain, backend.get(), stop);
+      ChooseTerrain(command.terrain, command.extent.level, backend.get(), stop);
   if (!terrain.ok()) return terrain.status();
+  const absl::StatusOr<std::optional<v1::SpotReport>> spots =
+      PrepareSpots(*terrain, ProgressMode::kAuto, backend.get(), stop);
+  if (!spots.ok()) return spots.status();
+  PrintSpotReport(*spots, *terrain);
   const RenderCommand viewed = WithView(command, *terrain);
-  const int level = command.extent.level.value_or(DefaultLevel(*terrain));
+  const int level = terrain->level;
   return terrain->recipe.dimensions() == 1
              ? DrawGeneratedProfile(viewed, *terrain, level, backend.get(),
                                     stop)

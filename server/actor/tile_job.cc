@@ -75,6 +75,9 @@ void TileJobImpl::WriteHeader() {
   if (const auto bound = terrain.DeviationBound()) {
     header_.set_deviation_bound(*bound);
   }
+  if (const auto spots = terrain.spots()) {
+    *header_.mutable_spots() = WriteSpotReport(*spots);
+  }
 }
 
 absl::Status TileJobImpl::Generate(const core::TileRequest& request,

@@ -71,6 +71,14 @@ inline constexpr EnumTable<v1::MacroCombine, core::MacroCombine, 3>
         {v1::MACRO_COMBINE_MINIMUM, core::MacroCombine::kMinimum},
     }};
 
+// Unset leaves the choice to the core, so no row stands for it; the first is
+// what every recipe may have.
+inline constexpr EnumTable<v1::DiscreteMethod, core::DiscreteMethod, 2>
+    kDiscreteMethods{{
+        {v1::DISCRETE_METHOD_CONDITION, core::DiscreteMethod::kCondition},
+        {v1::DISCRETE_METHOD_BUFFER, core::DiscreteMethod::kBuffer},
+    }};
+
 // The quantity has no default: an unset one is a violation of its own.
 inline constexpr EnumTable<v1::ConstraintQuantity, core::ConstraintQuantity, 2>
     kConstraintQuantities{{

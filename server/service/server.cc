@@ -28,6 +28,7 @@ Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
       terrain_service_(parts_),
       surface_service_(parts_),
       raster_service_(parts_),
+      spot_table_service_(parts_),
       info_service_(parts_) {}
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(
@@ -43,6 +44,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   builder.RegisterService(&server->terrain_service_);
   builder.RegisterService(&server->surface_service_);
   builder.RegisterService(&server->raster_service_);
+  builder.RegisterService(&server->spot_table_service_);
   builder.RegisterService(&server->info_service_);
   builder.SetMaxReceiveMessageSize(
       static_cast<int>(options.limits.max_request_bytes));
@@ -70,6 +72,7 @@ void Server::SetServing(bool serving) {
   for (const char* name : {"", v1::TerrainService::service_full_name(),
                            v1::SurfaceService::service_full_name(),
                            v1::RasterService::service_full_name(),
+                           v1::SpotTableService::service_full_name(),
                            v1::InfoService::service_full_name()}) {
     health->SetServingStatus(name, serving);
   }

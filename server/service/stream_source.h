@@ -20,8 +20,10 @@ class StreamSource {
  public:
   virtual ~StreamSource() = default;
 
-  // Reads and admits the request; the first message.
-  virtual absl::StatusOr<grpc::ByteBuffer> Open(CallRecord* record) = 0;
+  // Reads and admits the request, and makes ready what its messages come from;
+  // the first message.
+  virtual absl::StatusOr<grpc::ByteBuffer> Open(std::stop_token stop,
+                                                CallRecord* record) = 0;
   // Whether every message was made. After Open.
   virtual bool AllMade() const = 0;
   // The next message.

@@ -25,7 +25,8 @@ class SurfaceSource : public StreamSource {
   SurfaceSource(const ServiceParts& parts, const grpc::ByteBuffer& request)
       : parts_(parts), request_(request) {}
 
-  absl::StatusOr<grpc::ByteBuffer> Open(CallRecord* record) override {
+  absl::StatusOr<grpc::ByteBuffer> Open(std::stop_token,
+                                        CallRecord* record) override {
     v1::StreamSurfaceRequest request;
     const grpc::Status parsed =
         grpc::SerializationTraits<v1::StreamSurfaceRequest>::Deserialize(

@@ -14,7 +14,8 @@ class TerrainSource : public StreamSource {
   TerrainSource(const ServiceParts& parts, const grpc::ByteBuffer& request)
       : parts_(parts), request_(request) {}
 
-  absl::StatusOr<grpc::ByteBuffer> Open(CallRecord* record) override {
+  absl::StatusOr<grpc::ByteBuffer> Open(std::stop_token stop,
+                                        CallRecord* record) override {
     v1::StreamTilesRequest request;
     const grpc::Status parsed =
         grpc::SerializationTraits<v1::StreamTilesRequest>::Deserialize(
@@ -23,7 +24,7 @@ class TerrainSource : public StreamSource {
       return absl::InvalidArgumentError(
           "the request is not a StreamTilesRequest");
     }
-    auto job = parts_.actor->OpenTiles(request);
+    auto job = parts_.actor->OpenTiles(request, std::move(stop));
     if (!job.ok()) return job.status();
     job_ = *std::move(job);
     next_tile_ = job_->first();

@@ -67,7 +67,7 @@ void TileStream::RunTask(Clock::time_point submitted,
   }
   // Only this task touches the source and the record while it runs.
   auto made = opened_ ? source_->Next(stop_.get_token(), scratch, &record_)
-                      : source_->Open(&record_);
+                      : source_->Open(stop_.get_token(), &record_);
   std::unique_lock lock(mutex_);
   running_ = false;
   record_.queued += start - submitted;

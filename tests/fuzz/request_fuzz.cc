@@ -1,6 +1,7 @@
-// Parse, validate and price a StreamTiles and a StreamSurface request, whatever
-// the bytes: it never crashes, and an error is always one that the API
-// documents. The same bytes are read as both.
+// Parse, validate and price a StreamTiles and a StreamSurface request, and make
+// the terrain ready when that is cheap, whatever the bytes: it never crashes,
+// and an error is always one that the API documents. The same bytes are read as
+// both.
 //
 // Built as a libFuzzer target (TERRANE_FUZZERS, Clang; the bytes are a
 // serialized request or, when they start with '{', protobuf JSON) and, in every
@@ -32,11 +33,45 @@ Actor& TheActor() {
 }
 
 bool IsDocumented(const absl::Status& error) {
-  return absl::IsNotFound(error) ||
+  return absl::IsNotFound(error) || absl::IsResourceExhausted(error) ||
          (absl::IsInvalidArgument(error) && !core::ViolationsOf(error).empty());
 }
 
-bool SurfaceEstimateKeepsContract(const std::string& bytes) {
+bool PreparationKeepsContract(const v1::TerrainChoice& terrain) {
+  v1::PrepareTerrainRequest request;
+  *request.mutable_terrain() = terrain;
+  double last = 0;
+  bool rises = true;
+  const auto prepared = TheActor().PrepareTerrain(
+      request,
+      [&](double fraction) {
+        rises = rises && fraction >= last && fraction <= 1;
+        last = fraction;
+      },
+      {});
+  if (!prepared.ok()) return IsDocumented(prepared.status());
+  return rises && prepared->memory_bytes() >= 0 &&
+         !prepared->recipe_hash().empty();
+}
+
+bool TerrainKeepsContract(const std::string& bytes) {
+  constexpr double kCheapSeconds = 0.05;
+  v1::EstimateTilesRequest request;
+  if (!ParseRequest(bytes, request.mutable_request())) return true;
+  const auto estimate = TheActor().EstimateTiles(request);
+  if (!estimate.ok()) return IsDocumented(estimate.status());
+  if (estimate->tiles() < 0 || estimate->samples() < 0 ||
+      estimate->samples() > (std::int64_t{1} << 36) ||
+      estimate->generated_points() < estimate->samples() ||
+      !(estimate->cpu_seconds() >= 0) || !(estimate->prepare_seconds() >= 0) ||
+      estimate->prepare_bytes() < 0) {
+    return false;
+  }
+  return estimate->prepare_seconds() > kCheapSeconds ||
+         PreparationKeepsContract(request.request().terrain());
+}
+
+bool SurfaceKeepsContract(const std::string& bytes) {
   v1::EstimateSurfaceRequest request;
   if (!ParseRequest(bytes, request.mutable_request())) return true;
   const auto estimate = TheActor().EstimateSurface(request);
@@ -48,16 +83,8 @@ bool SurfaceEstimateKeepsContract(const std::string& bytes) {
 }
 
 // False when an answer breaks the contract.
-bool EstimateKeepsContract(const std::string& bytes) {
-  if (!SurfaceEstimateKeepsContract(bytes)) return false;
-  v1::EstimateTilesRequest request;
-  if (!ParseRequest(bytes, request.mutable_request())) return true;
-  const auto estimate = TheActor().EstimateTiles(request);
-  if (!estimate.ok()) return IsDocumented(estimate.status());
-  return estimate->tiles() >= 0 && estimate->samples() >= 0 &&
-         estimate->samples() <= (std::int64_t{1} << 36) &&
-         estimate->generated_points() >= estimate->samples() &&
-         estimate->cpu_seconds() >= 0;
+bool RequestKeepsContract(const std::string& bytes) {
+  return TerrainKeepsContract(bytes) && SurfaceKeepsContract(bytes);
 }
 
 }  // namespace terrane::server
@@ -67,7 +94,7 @@ bool EstimateKeepsContract(const std::string& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  if (!terrane::server::EstimateKeepsContract(bytes)) std::abort();
+  if (!terrane::server::RequestKeepsContract(bytes)) std::abort();
   return 0;
 }
 
@@ -102,7 +129,7 @@ TEST(RequestFuzzTest, CorpusKeepsTheContract) {
   for (const char* folder : {"request", "surface"}) {
     const std::vector<std::filesystem::path> seeds = Seeds(folder);
     for (const std::filesystem::path& seed : seeds) {
-      EXPECT_TRUE(EstimateKeepsContract(BytesOf(seed))) << seed.filename();
+      EXPECT_TRUE(RequestKeepsContract(BytesOf(seed))) << seed.filename();
     }
     EXPECT_GE(seeds.size(), 6u) << folder;
   }
