@@ -272,12 +272,12 @@ absl::StatusOr<Picture> DrawSideBySide(const RenderCommand& command) {
   options.light = LightOf(command, options.light);
   options.exaggeration = command.exaggeration.value_or(1);
   std::vector<Panel> panels;
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < placed.size(); ++i) {
     panels.push_back(
         {ViewOf(placed[i].raster), &scales[i],
          CaptionOf(command.side_by_side[i], placed[i], scales[i])});
   }
-  return RenderSideBySide(panels[0], panels[1], options);
+  return RenderSideBySide(panels, options);
 }
 
 int Run(const RenderCommand& command, std::stop_token stop) {
@@ -363,10 +363,12 @@ void AddRenderCommand(CLI::App* app, Action* action) {
                        "Raster, .r16, .f32 or profile .csv to draw")
           ->check(CLI::ExistingFile);
   subcommand
-      ->add_option("--side-by-side", command->side_by_side,
-                   "Two elevation models: hillshades at the same ground scale")
+      ->add_option(
+          "--side-by-side", command->side_by_side,
+          "Two to four elevation models: hillshades at the same ground "
+          "scale")
       ->check(CLI::ExistingFile)
-      ->expected(2)
+      ->expected(2, 4)
       ->excludes(input);
   subcommand->add_option("--band", command->band, "Band of the raster, from 1")
       ->check(CLI::Range(1, 65535));
