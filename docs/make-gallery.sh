@@ -107,13 +107,17 @@ picture spots-jacksboro "One post in a hundred, and the rest made again" \
 and met exactly by each: spot heights over a flat macro shape, inverse distance, and a thin-plate
 spline. Below, the framed part of each.
 
-*What to see.* The terrain is about as rough as the model, calm where the model is calm, and
-nothing shows where its 1,386 spots are; inverse distance has a pimple at each, and the spline a
+*What to see.* The terrain is as rough as the model over four posts and more, rougher from post to
+post, and calm where the model is calm;
+nothing shows where its 1,386 spots are. Inverse distance has a pimple at each, and the spline a
 blister. No map has the model's valleys and straight walls: one post in a hundred does not tell of
 them. [Variograms and errors](terrain.md#compared-with-interpolation)."
 
 preset demo/spots "Mountains where the five heights ask for them, as rough as the ground around, and a
 river valley from the upper left to the lower right. No height shows as a spike, a cone or a disc."
+run render --local --preset demo/spots --show-spots --out "$pictures/spots-marked.png"
+picture spots-marked "The heights that were given" \
+  "The same map with the five points and the river drawn on it."
 
 say "## Ground to start from" "" "Presets with SUBDIVISION and LINEAR, the defaults, in metres and without a border." ""
 preset demo/hills "No grid, no creases and no direction that stands out."

@@ -5,8 +5,8 @@ Run in the root of the tree: docs/spot-comparison.py [TERRANE]
 
 The posts kept are spot heights over a flat macro shape; H and T come from them
 alone. Beside the terrain, the same spots are interpolated by inverse distance
-and by a thin-plate spline. Prints two tables, roughness (variograms) and errors
-at the posts left out, and leaves the maps in out/spots. Needs Debian's python3
+and by a thin-plate spline. Prints two tables: roughness (variograms), and errors
+at the posts left out with what shows of the spots; and leaves the maps in out/spots. Needs Debian's python3
 with numpy and gdal.
 """
 
@@ -199,6 +199,14 @@ def slope(values, first, last):
     return np.log(values[j] / values[i]) / np.log(last / first) / 2
 
 
+def bend_at_spots(heights, left_out):
+    """Mean squared Laplacian at the spots over that elsewhere: 1 shows no spot."""
+    bend = ((heights[1:-1, :-2] + heights[1:-1, 2:] + heights[:-2, 1:-1] + heights[2:, 1:-1]) / 4
+            - heights[1:-1, 1:-1]) ** 2
+    inner = left_out[1:-1, 1:-1]
+    return bend[~inner].mean() / bend[inner].mean()
+
+
 def generate(terrane, shape, seed):
     path = f"{OUT}/seed-{seed}.tif"
     subprocess.run(
@@ -220,10 +228,12 @@ def report(original, maps, left_out):
         cells = [f"{value:.0f}" for value in values]
         cells += [f"{slope(values, 1, 4):.2f}", f"{slope(values, 4, 16):.2f}"]
         print(f"| {name} | " + " | ".join(cells) + " |")
-    print("\nerror at the posts left out, m\n\n| | root mean square | mean |\n| --- | --- | --- |")
-    for name, heights in maps:
+    print("\nerror at the posts left out, m; squared bend at the spots over that elsewhere\n")
+    print("| | root mean square | mean | bend at spots |\n| --- | --- | --- | --- |")
+    for name, heights in [("original", original)] + maps:
         error = (heights - original)[left_out]
-        print(f"| {name} | {np.sqrt(np.mean(error ** 2)):.1f} | {error.mean():.1f} |")
+        print(f"| {name} | {np.sqrt(np.mean(error ** 2)):.1f} | {error.mean():.1f} | "
+              f"{bend_at_spots(heights, left_out):.2f} |")
 
 
 def main():

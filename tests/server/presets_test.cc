@@ -26,9 +26,13 @@ using ::testing::Not;
 using ::testing::Truly;
 
 // No preset names a raster: it would have to be uploaded first.
-class NoRasters : public RasterSource {
+// A preset brings all that it needs.
+class Nothing : public RasterSource, public SpotTableSource {
  public:
   PlacedRaster Find(const std::string&) override { return {}; }
+  std::shared_ptr<const SpotTable> FindTable(const std::string&) override {
+    return nullptr;
+  }
 };
 
 // Says whether a world point belongs to the part of a figure in question.
@@ -88,12 +92,14 @@ class Figure {
  private:
   void Generate(const v1::TerrainPreset& preset) {
     preset_ = preset;
-    NoRasters rasters;
+    Nothing nothing;
     core::Violations violations;
-    const ReadRecipe read = ReadTerrainRecipe(
-        preset.recipe(), &rasters, Limits().recipe, "recipe.", &violations);
+    const ReadRecipe read =
+        ReadTerrainRecipe(preset.recipe(), {&nothing, &nothing},
+                          Limits().recipe, "recipe.", &violations);
     ASSERT_TRUE(violations.empty()) << violations.ToStatus();
     ASSERT_THAT(read.missing_raster, IsEmpty());
+    ASSERT_THAT(read.missing_spot_table, IsEmpty());
     const auto terrain = core::Terrain::Create(read.spec);
     ASSERT_TRUE(terrain.ok()) << terrain.status();
 
