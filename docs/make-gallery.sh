@@ -107,11 +107,10 @@ picture spots-jacksboro "One post in a hundred, and the rest made again" \
 and met exactly by each: spot heights over a flat macro shape, inverse distance, and a thin-plate
 spline. Below, the framed part of each.
 
-*What to see.* The terrain is as rough as the model over four posts and more, rougher from post to
-post, and calm where the model is calm;
-nothing shows where its 1,386 spots are. Inverse distance has a pimple at each, and the spline a
-blister. No map has the model's valleys and straight walls: one post in a hundred does not tell of
-them. [Variograms and errors](terrain.md#compared-with-interpolation)."
+*What to see.* The terrain is as rough as the model over four posts and more, and rougher from
+post to post; it is calm where the model is calm, and nothing shows where its 1,386 spots are.
+Inverse distance has a pimple at each, and the spline a blister. No map has the model's valleys and
+straight walls: one post in a hundred does not tell of them. [Variograms and errors](terrain.md#compared-with-interpolation)."
 
 preset demo/spots "Mountains where the five heights ask for them, as rough as the ground around, and a
 river valley from the upper left to the lower right. No height shows as a spike, a cone or a disc."

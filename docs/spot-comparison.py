@@ -5,9 +5,9 @@ Run in the root of the tree: docs/spot-comparison.py [TERRANE]
 
 The posts kept are spot heights over a flat macro shape; H and T come from them
 alone. Beside the terrain, the same spots are interpolated by inverse distance
-and by a thin-plate spline. Prints two tables: roughness (variograms), and errors
-at the posts left out with what shows of the spots; and leaves the maps in out/spots. Needs Debian's python3
-with numpy and gdal.
+and by a thin-plate spline. Prints two tables, one of roughness (variograms), one
+of errors at the posts left out and of what shows of the spots, and leaves the
+maps in out/spots. Needs Debian's python3 with numpy and gdal.
 """
 
 import json
