@@ -70,6 +70,7 @@ stands above the commands that draw it again, bit for bit on any machine; run th
 root of the tree with `build/release/bin` in the path.
 
 - [A real elevation model, refined](#a-real-elevation-model-refined)
+- [Spot heights](#spot-heights)
 - [Ground to start from](#ground-to-start-from)
 - [Sources and mappings](#sources-and-mappings)
 - [The paper's figures](#the-papers-figures)
@@ -112,6 +113,26 @@ picture jacksboro-block "The refined model as a block" \
 
 *What to see.* Two long straight walls that meet, rugged mountains in the west and the low
 country in the east, down to slopes of a few samples."
+
+say "## Spot heights" "" "Heights that are met exactly, see [terrain.md](terrain.md#spot-heights)." ""
+docs/spot-comparison.py "$terrane" >"$work/comparison.md"
+commands+=("docs/spot-comparison.py")
+run render --side-by-side out/spots/{original,spot-heights,inverse-distance,thin-plate}.tif --width 403 --out "$pictures/spots-jacksboro.png"
+picture spots-jacksboro "One post in a hundred, and the rest made again" \
+  "The model on the left. Then three maps that know one post in a hundred of it, picked at random
+and met exactly by each: spot heights over a flat macro shape, inverse distance, and a thin-plate
+spline. Below, the framed part of each.
+
+*What to see.* The terrain is as rough as the model over four posts and more, and rougher from
+post to post; it is calm where the model is calm, and nothing shows where its 1,386 spots are.
+Inverse distance has a pimple at each, and the spline a blister. No map has the model's valleys and
+straight walls: one post in a hundred does not tell of them. [Variograms and errors](terrain.md#compared-with-interpolation)."
+
+preset demo/spots "Mountains where the five heights ask for them, as rough as the ground around, and a
+river valley from the upper left to the lower right. No height shows as a spike, a cone or a disc."
+run render --local --preset demo/spots --show-spots --out "$pictures/spots-marked.png"
+picture spots-marked "The heights that were given" \
+  "The same map with the five points and the river drawn on it."
 
 say "## Ground to start from" "" "Presets with SUBDIVISION and LINEAR, the defaults, in metres and without a border." ""
 preset demo/hills "No grid, no creases and no direction that stands out."

@@ -50,6 +50,7 @@ struct RenderCommand {
   std::optional<double> exaggeration;
   std::optional<double> water_level;
   std::vector<double> marks;
+  bool show_spots = false;
   std::vector<double> light;  // azimuth, altitude; empty: by style
   double turn_deg = PerspectiveOptions().turn_deg;
   double tilt_deg = PerspectiveOptions().tilt_deg;
@@ -190,6 +191,47 @@ absl::StatusOr<Picture> DrawGeneratedProfile(const RenderCommand& command,
   return DrawProfile(command, {macro, height});
 }
 
+constexpr Rgb kSpot{0.85, 0.20, 0.15};
+constexpr Rgb kSpotRim{1, 1, 1};
+constexpr Rgb kSpotLine{0.12, 0.30, 0.62};
+
+// The points and lines of the spot heights over a map of the samples in
+// `frame`.
+Picture WithSpots(const Picture& map, const core::Frame& frame,
+                  double pixels_per_sample_x, double pixels_per_sample_y,
+                  const ChosenTerrain& terrain) {
+  Canvas canvas(map.width, map.height, kSpotRim);
+  canvas.Paste(map, 0, 0);
+  const auto pixel = [&](double x, double y) -> PixelPoint {
+    return {
+        ((x - frame.origin_x) / frame.spacing_x + 0.5) * pixels_per_sample_x,
+        ((y - frame.origin_y) / frame.spacing_y + 0.5) * pixels_per_sample_y};
+  };
+  for (const v1::SpotLine& line : terrain.recipe.spots().lines()) {
+    for (int i = 1; i < line.vertices_size(); ++i) {
+      const v1::Point& from = line.vertices(i - 1);
+      const v1::Point& to = line.vertices(i);
+      canvas.DrawLine(pixel(from.x(), from.y()), pixel(to.x(), to.y()), 1.6,
+                      kSpotLine);
+    }
+  }
+  const auto draw_point = [&](double x, double y) {
+    const PixelPoint at = pixel(x, y);
+    canvas.DrawLine(at, at, 8, kSpotRim);
+    canvas.DrawLine(at, at, 5, kSpot);
+  };
+  for (const v1::SpotHeight& point : terrain.recipe.spots().points()) {
+    draw_point(point.x(), point.y());
+  }
+  if (terrain.spots != nullptr) {
+    const SpotTable& table = terrain.spots->table;
+    for (std::size_t i = 0; i < table.rows(); ++i) {
+      draw_point(table.x[i], table.y[i]);
+    }
+  }
+  return canvas.picture();
+}
+
 absl::StatusOr<Picture> DrawGeneratedField(const RenderCommand& command,
                                            const ChosenTerrain& terrain,
                                            int level, Backend* backend,
@@ -206,7 +248,21 @@ absl::StatusOr<Picture> DrawGeneratedField(const RenderCommand& command,
   absl::StatusOr<PlacedRaster> placed =
       StreamToMemory(request, kMaxSamples, backend, stop);
   if (!placed.ok()) return placed.status();
-  return DrawRaster(command, *command.style, *std::move(placed));
+  if (!command.show_spots) {
+    return DrawRaster(command, *command.style, *std::move(placed));
+  }
+  if (command.style == v1::RENDER_STYLE_PERSPECTIVE) {
+    return absl::InvalidArgumentError(
+        "--show-spots: must be a map from above, got --style perspective");
+  }
+  PutNorthUp(&*placed);
+  const absl::StatusOr<Picture> map =
+      DrawRaster(command, *command.style, *placed);
+  if (!map.ok()) return map.status();
+  const core::Raster& raster = placed->raster;
+  return WithSpots(*map, raster.frame,
+                   map->width / static_cast<double>(raster.width),
+                   map->height / static_cast<double>(raster.height), terrain);
 }
 
 // The preset's view, where no option says otherwise.
@@ -299,12 +355,12 @@ absl::StatusOr<Picture> DrawSideBySide(const RenderCommand& command) {
   options.light = LightOf(command, options.light);
   options.exaggeration = command.exaggeration.value_or(1);
   std::vector<Panel> panels;
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < placed.size(); ++i) {
     panels.push_back(
         {ViewOf(placed[i].raster), &scales[i],
          CaptionOf(command.side_by_side[i], placed[i], scales[i])});
   }
-  return RenderSideBySide(panels[0], panels[1], options);
+  return RenderSideBySide(panels, options);
 }
 
 int Run(const RenderCommand& command, std::stop_token stop) {
@@ -345,6 +401,9 @@ void AddPictureOptions(CLI::App* app, RenderCommand* command) {
   app->add_option("--marks", command->marks,
                   "X,X,...: verticals in a plotted profile")
       ->delimiter(',')
+      ->group("Picture");
+  app->add_flag("--show-spots", command->show_spots,
+                "Draw the spot heights' points and lines on a generated map")
       ->group("Picture");
   app->add_option("--light", command->light,
                   "AZIMUTH,ALTITUDE of the light in degrees (default: 315,45; "
@@ -391,10 +450,12 @@ void AddRenderCommand(CLI::App* app, Action* action) {
                        "Raster, .r16, .f32 or profile .csv to draw")
           ->check(CLI::ExistingFile);
   subcommand
-      ->add_option("--side-by-side", command->side_by_side,
-                   "Two elevation models: hillshades at the same ground scale")
+      ->add_option(
+          "--side-by-side", command->side_by_side,
+          "Two to four elevation models: hillshades at the same ground "
+          "scale")
       ->check(CLI::ExistingFile)
-      ->expected(2)
+      ->expected(2, 4)
       ->excludes(input);
   subcommand->add_option("--band", command->band, "Band of the raster, from 1")
       ->check(CLI::Range(1, 65535));

@@ -4,6 +4,7 @@
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <string>
 #include <utility>
@@ -97,12 +98,13 @@ class Draws {
   RowKey row_key_ = {0, 0};
 };
 
-// A displacement that several spots share: a column of W.
+// A displacement that several spots share: a column of W. There are up to 10^7.
 struct SharedAncestor {
-  std::uint32_t slot = 0;
-  int level = 0;
   LatticePoint point;
-  double deviation = 0;
+  std::uint32_t slot = 0;
+  float deviation = 0;
+
+  int level() const { return static_cast<int>(slot / 2); }
 };
 
 // Standard deviations of the displacements around one spot, a level at a time.
@@ -198,7 +200,7 @@ class Conditioner {
   std::vector<absl::flat_hash_set<LatticePoint, PointHash>> held_;  // by level
 
   GramMatrix gram_;
-  std::vector<SharedAncestor> shared_;
+  std::deque<SharedAncestor> shared_;  // by column
   std::vector<absl::flat_hash_map<LatticePoint, std::uint32_t, PointHash>>
       columns_;                 // by slot
   std::vector<double> misses_;  // P(p_k) + e_k - P_k
@@ -301,7 +303,7 @@ std::uint32_t Conditioner::ColumnOf(const Term& term) {
       term.key.point, static_cast<std::uint32_t>(shared_.size()));
   if (fresh) {
     shared_.push_back(
-        {term.key.slot, term.level, term.key.point, term.deviation});
+        {term.key.point, term.key.slot, static_cast<float>(term.deviation)});
   }
   return place->second;
 }
@@ -375,14 +377,16 @@ absl::StatusOr<CorrectionTable> Conditioner::MakeTable(
     const std::vector<double>& x) {
   std::vector<double> shared(shared_.size());
   gram_.Transposed(x, shared);
+  gram_ = {};
   for (const SharedAncestor& a : shared_) {
-    builder_.Announce(a.slot, a.level, a.point);
+    builder_.Announce(a.slot, a.level(), a.point);
   }
   builder_.Allocate();
   for (std::size_t column = 0; column < shared_.size(); ++column) {
     const SharedAncestor& a = shared_[column];
-    builder_.Add(a.slot, a.level, a.point,
-                 static_cast<float>(-a.deviation * shared[column]));
+    builder_.Add(
+        a.slot, a.level(), a.point,
+        static_cast<float>(-static_cast<double>(a.deviation) * shared[column]));
   }
   for (std::size_t k = 0; k < spots_.size(); ++k) {
     if (!Poll(k, kSolved, 1)) return StoppedStatus();
@@ -413,6 +417,7 @@ absl::StatusOr<CorrectionTable> Conditioner::Run() {
     AddRow(k);
   }
   if (!violations_.empty()) return violations_.ToStatus();
+  columns_ = {};  // the rows are complete; the solver takes memory of its own
   absl::StatusOr<std::vector<double>> x = Solve();
   if (!x.ok()) return x.status();
   return MakeTable(*x);
@@ -428,17 +433,22 @@ absl::StatusOr<CorrectionTable> ConditionProcess(
 
 PreparationCost ConditioningCost(FractalSource source, int dimensions,
                                  std::int64_t spots, int level) {
-  // A little more than tests/bench/core_bench (prepare/spots) measures.
+  // A little more than tests/bench/core_bench (prepare/spots) measures. Few
+  // spots share ancestors below the twelfth level: there are too many points.
+  constexpr int kSharedLevels = 12;
   constexpr double kSecondsASpot = 8e-5;
   constexpr double kSecondsAnAncestor = 5e-7;
-  constexpr double kBytesASpot = 1500;
-  constexpr double kBytesAnAncestor = 25;
+  constexpr double kBytesASpot = 2000;
+  constexpr double kBytesAnAncestor = 5;
+  constexpr double kBytesASharedOne = 17;
   const auto count = static_cast<double>(spots);
-  const double ancestors =
-      count * (level + 1.0) * AncestorsPerLevel(source, dimensions);
+  const double a_level = count * AncestorsPerLevel(source, dimensions);
+  const double ancestors = a_level * (level + 1);
+  const double shared = a_level * std::min(level + 1, kSharedLevels);
   return {spots, count * kSecondsASpot + ancestors * kSecondsAnAncestor,
           static_cast<std::int64_t>(count * kBytesASpot +
-                                    ancestors * kBytesAnAncestor)};
+                                    ancestors * kBytesAnAncestor +
+                                    shared * kBytesASharedOne)};
 }
 
 }  // namespace terrane::core

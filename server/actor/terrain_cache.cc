@@ -1,5 +1,6 @@
 #include "server/actor/terrain_cache.h"
 
+#include <atomic>
 #include <optional>
 #include <stop_token>
 #include <utility>
@@ -50,13 +51,11 @@ class TerrainCache::Caller {
   // `making->callers` counts this one already.
   Caller(TerrainCache* cache, const std::string& key,
          std::shared_ptr<Making> making, std::stop_token stop)
-      : cache_(cache), key_(key), making_(std::move(making)) {
-    on_stop_.emplace(std::move(stop), LeaveOnce{this});
-  }
-  ~Caller() {
-    on_stop_.reset();  // waits for a callback that is under way
-    Leave();
-  }
+      : cache_(cache),
+        key_(key),
+        making_(std::move(making)),
+        on_stop_(std::move(stop), LeaveOnce{this}) {}
+  ~Caller() { Leave(); }
   Caller(const Caller&) = delete;
   Caller& operator=(const Caller&) = delete;
 
@@ -67,14 +66,15 @@ class TerrainCache::Caller {
   };
 
   void Leave() {
-    if (!std::exchange(left_, true)) cache_->Leave(key_, making_.get());
+    if (!left_.exchange(true)) cache_->Leave(key_, making_.get());
   }
 
   TerrainCache* const cache_;
   const std::string& key_;
   const std::shared_ptr<Making> making_;
-  bool left_ = false;
-  std::optional<std::stop_callback<LeaveOnce>> on_stop_;
+  std::atomic<bool> left_ = false;
+  // Last: it goes first, and waits for a callback that is under way.
+  std::stop_callback<LeaveOnce> on_stop_;
 };
 
 TerrainCache::TerrainCache(std::int64_t max_bytes, Create create)

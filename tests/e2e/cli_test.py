@@ -382,6 +382,8 @@ class CliTest(unittest.TestCase):
             "block": [DEM, "--style", "perspective", "--water-level", "290", "--width", "400"],
             "plot": [self.folder / "a.csv", "--marks", "1,2"],
             "both": ["--side-by-side", DEM, DEM, "--width", "300"],
+            "four": ["--side-by-side", DEM, DEM, DEM, DEM, "--width", "200"],
+            "spots": ["--preset", "demo/spots", "--show-spots", "--local"],
             "line-preset": ["--preset", "fbm/fig04c", "--server", self.address],
             "field-preset": ["--preset", "fbm/fig06c", "--server", self.address],
         }

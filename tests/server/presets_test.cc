@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "core/terrain/terrain.h"
@@ -322,6 +323,30 @@ TEST(PaperFiguresTest, Figure7dCorrodesTheTopThat7cKeeps) {
   // Pits below the top as it was made: in d alone.
   EXPECT_EQ(c.ShareBelow(top), 0);
   EXPECT_GT(d.ShareBelow(top), 0.02);
+}
+
+TEST(DemoTest, SpotsAreMetAndTheRiverFalls) {
+  const Figure figure("demo/spots");
+  const v1::SpotHeights& spots = figure.preset().recipe().spots();
+  ASSERT_EQ(spots.points_size(), 5);
+  for (const v1::SpotHeight& point : spots.points()) {
+    EXPECT_EQ(figure.heights()[figure.At(point.x(), point.y())],
+              static_cast<float>(point.height()))
+        << point.ShortDebugString();
+  }
+  ASSERT_EQ(spots.lines_size(), 1);
+  const v1::SpotLine& river = spots.lines(0);
+  EXPECT_TRUE(river.only_falls());
+  // The first and the last vertex lie outside the view.
+  float before = std::numeric_limits<float>::infinity();
+  for (int i = 1; i + 1 < river.vertices_size(); ++i) {
+    const v1::Point& vertex = river.vertices(i);
+    const std::size_t at = figure.At(vertex.x(), vertex.y());
+    // Samples stand at every 32 m along the line, not at its vertices.
+    EXPECT_NEAR(figure.heights()[at], figure.macro()[at], 5);
+    EXPECT_LT(figure.heights()[at], before) << vertex.ShortDebugString();
+    before = figure.heights()[at];
+  }
 }
 
 }  // namespace
