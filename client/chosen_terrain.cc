@@ -2,18 +2,22 @@
 
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <utility>
 
+#include "client/chosen_spots.h"
 #include "client/placed_raster.h"
 
 namespace terrane::client {
 namespace {
 
 constexpr int kDemLevel = 3;
+// The finest level that spot heights snap to.
+constexpr int kMaxSpotsLevel = 30;
 
 absl::Status ReadRecipeFile(const std::string& path,
                             v1::TerrainRecipe* recipe) {
@@ -84,7 +88,8 @@ absl::Status SetRoughness(const std::string& text, v1::TerrainRecipe* recipe) {
 // Whether anything but the seed differs from the recipe as it is.
 bool HasOverrides(const TerrainOptions& options) {
   return options.source.has_value() || options.mapping.has_value() ||
-         !options.roughness.empty() || options.fidelity.has_value();
+         !options.roughness.empty() || options.fidelity.has_value() ||
+         !options.spots.path.empty();
 }
 
 absl::Status Override(const TerrainOptions& options,
@@ -124,15 +129,31 @@ absl::Status UseBase(const TerrainOptions& options, Backend* backend,
   return status;
 }
 
+// The level to make when none was asked for.
+int DefaultLevel(const ChosenTerrain& terrain) {
+  if (terrain.recipe.has_refinement()) return kDemLevel;
+  return terrain.view.level();
+}
+
 }  // namespace
 
 absl::StatusOr<ChosenTerrain> ChooseTerrain(const TerrainOptions& options,
+                                            std::optional<int> level,
                                             Backend* backend,
                                             std::stop_token stop) {
   ChosenTerrain terrain;
   absl::Status status = UseBase(options, backend, stop, &terrain);
   if (status.ok()) status = Override(options, &terrain.recipe);
   if (!status.ok()) return status;
+  terrain.level = level.value_or(DefaultLevel(terrain));
+  if (!options.spots.path.empty()) {
+    const int spots_level =
+        options.spots_level.value_or(std::min(terrain.level, kMaxSpotsLevel));
+    auto spots =
+        UseSpots(options.spots, spots_level, backend, stop, &terrain.recipe);
+    if (!spots.ok()) return spots.status();
+    terrain.spots = *std::move(spots);
+  }
   if (!options.preset.empty() && !HasOverrides(options)) {
     terrain.choice.set_preset(options.preset);
   } else {
@@ -140,11 +161,6 @@ absl::StatusOr<ChosenTerrain> ChooseTerrain(const TerrainOptions& options,
   }
   if (options.seed.has_value()) terrain.choice.set_seed(*options.seed);
   return terrain;
-}
-
-int DefaultLevel(const ChosenTerrain& terrain) {
-  if (terrain.recipe.has_refinement()) return kDemLevel;
-  return terrain.view.level();
 }
 
 }  // namespace terrane::client

@@ -3,12 +3,14 @@
 #define TERRANE_CLIENT_CHOSEN_TERRAIN_H_
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "client/backend.h"
+#include "client/spot_file.h"
 
 namespace terrane::client {
 
@@ -28,6 +30,10 @@ struct TerrainOptions {
   // "auto" or H; empty: as the recipe says.
   std::string roughness;
   std::optional<double> fidelity;
+  // Spot heights in the place of the recipe's own; an empty path: as it says.
+  SpotFileOptions spots;
+  // Level that they snap to; default: the level that is made.
+  std::optional<int> spots_level;
 };
 
 struct ChosenTerrain {
@@ -40,18 +46,21 @@ struct ChosenTerrain {
   // How a preset wants to be looked at; empty otherwise.
   v1::PresetView view;
   std::string title;
+  // The file of --spots, whose rows errors speak of; null without one.
+  std::shared_ptr<const SpotFile> spots;
+  // The level to make.
+  int level = 0;
 };
 
-// Reads files, uploads the elevation model, and asks for the preset. Errors: an
-// unreadable file, a recipe that is no JSON of a TerrainRecipe, a roughness
-// that is no number, and those of the backend.
+// Reads files, uploads the elevation model and the spot heights, and asks for
+// the preset. `level` is the one asked for; without it the preset's view says,
+// level 3 of an elevation model, else 0. Errors: an unreadable file, a recipe
+// that is no JSON of a TerrainRecipe, a roughness that is no number, and those
+// of the backend.
 absl::StatusOr<ChosenTerrain> ChooseTerrain(const TerrainOptions& options,
+                                            std::optional<int> level,
                                             Backend* backend,
                                             std::stop_token stop);
-
-// The level to make when none was asked for: the preset's view, level 3 of an
-// elevation model, else 0.
-int DefaultLevel(const ChosenTerrain& terrain);
 
 }  // namespace terrane::client
 

@@ -2,26 +2,37 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "client/raster_upload.h"
+#include "client/spot_upload.h"
+#include "client/surface_verifier.h"
 #include "client/tile_verifier.h"
 #include "core/terrain/terrain.h"
 
 namespace terrane::client {
 namespace {
 
-// Makes the tiles of a job on several threads and hands them out in order. A
-// thread that is too far ahead of the reader waits.
+// Makes one tile, by its index, with the scratch memory of its thread.
+template <typename Tile>
+using MakeTile = std::function<absl::Status(std::int64_t, std::stop_token,
+                                            core::TileScratch*, Tile*)>;
+
+// Makes the tiles `first` to `total` of a job on several threads and hands them
+// out in order. A thread that is too far ahead of the reader waits.
+template <typename Tile>
 class OrderedTiles {
  public:
-  OrderedTiles(std::shared_ptr<const server::TileJob> job, int threads)
-      : job_(std::move(job)),
-        next_to_make_(job_->first()),
-        next_to_take_(job_->first()),
+  OrderedTiles(std::int64_t first, std::int64_t total, MakeTile<Tile> make,
+               int threads)
+      : total_(total),
+        make_(std::move(make)),
+        next_to_make_(first),
+        next_to_take_(first),
         slots_(static_cast<std::size_t>(threads) * 2) {
     for (int i = 0; i < threads; ++i) {
       threads_.emplace_back([this](std::stop_token stop) { Make(stop); });
@@ -34,7 +45,7 @@ class OrderedTiles {
   }
 
   // The next tile; CANCELLED when `stop` is asked for.
-  absl::StatusOr<v1::HeightTile> Take(std::stop_token stop) {
+  absl::StatusOr<Tile> Take(std::stop_token stop) {
     std::unique_lock lock(mutex_);
     Slot& slot = SlotOf(next_to_take_);
     if (!changed_.wait(lock, stop, [&] { return slot.filled; })) {
@@ -43,7 +54,7 @@ class OrderedTiles {
     slot.filled = false;
     ++next_to_take_;
     absl::Status status = std::move(slot.status);
-    v1::HeightTile tile = std::move(slot.tile);
+    Tile tile = std::move(slot.tile);
     lock.unlock();
     changed_.notify_all();
     if (!status.ok()) return status;
@@ -54,7 +65,7 @@ class OrderedTiles {
   struct Slot {
     bool filled = false;
     absl::Status status;
-    v1::HeightTile tile;
+    Tile tile;
   };
 
   Slot& SlotOf(std::int64_t index) {
@@ -67,15 +78,15 @@ class OrderedTiles {
     while (true) {
       std::unique_lock lock(mutex_);
       const bool may_go = changed_.wait(lock, stop, [&] {
-        return next_to_make_ >= job_->total() ||
+        return next_to_make_ >= total_ ||
                next_to_make_ < next_to_take_ + slot_count;
       });
-      if (!may_go || next_to_make_ >= job_->total()) return;
+      if (!may_go || next_to_make_ >= total_) return;
       const std::int64_t index = next_to_make_++;
       lock.unlock();
 
-      v1::HeightTile tile;
-      absl::Status status = job_->MakeTile(index, stop, &scratch, &tile);
+      Tile tile;
+      absl::Status status = make_(index, stop, &scratch, &tile);
 
       lock.lock();
       Slot& slot = SlotOf(index);
@@ -87,7 +98,8 @@ class OrderedTiles {
     }
   }
 
-  std::shared_ptr<const server::TileJob> job_;
+  const std::int64_t total_;
+  const MakeTile<Tile> make_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::int64_t next_to_make_;
@@ -96,6 +108,22 @@ class OrderedTiles {
   // Last, so that the threads end before what they use goes.
   std::vector<std::jthread> threads_;
 };
+
+// Makes, verifies and hands out the tiles of a job.
+template <typename Tile, typename Job, typename Verifier, typename OnTileOf>
+absl::Status HandOut(const Job& job, MakeTile<Tile> make, int threads,
+                     Verifier* verifier, const OnTileOf& on_tile,
+                     std::stop_token stop) {
+  OrderedTiles<Tile> tiles(job.first(), job.total(), std::move(make), threads);
+  while (verifier->next_index() < job.total()) {
+    const absl::StatusOr<Tile> tile = tiles.Take(stop);
+    if (!tile.ok()) return tile.status();
+    absl::Status status = verifier->CheckTile(*tile);
+    if (status.ok()) status = on_tile(*tile);
+    if (!status.ok()) return status;
+  }
+  return verifier->CheckEnd();
+}
 
 }  // namespace
 
@@ -108,22 +136,45 @@ absl::Status LocalBackend::StreamTiles(const v1::StreamTilesRequest& request,
                                        const OnTile& on_tile,
                                        std::stop_token stop) {
   const absl::StatusOr<std::shared_ptr<const server::TileJob>> job =
-      actor_->OpenTiles(request);
+      actor_->OpenTiles(request, stop);
   if (!job.ok()) return job.status();
   TileVerifier verifier(request);
   absl::Status status = verifier.CheckHeader((*job)->header());
   if (status.ok()) status = on_header((*job)->header());
   if (!status.ok()) return status;
 
-  OrderedTiles tiles(*job, threads_);
-  while (verifier.next_index() < (*job)->total()) {
-    const absl::StatusOr<v1::HeightTile> tile = tiles.Take(stop);
-    if (!tile.ok()) return tile.status();
-    status = verifier.CheckTile(*tile);
-    if (status.ok()) status = on_tile(*tile);
-    if (!status.ok()) return status;
-  }
-  return verifier.CheckEnd();
+  return HandOut<v1::HeightTile>(
+      **job,
+      [&job](std::int64_t index, std::stop_token stopped,
+             core::TileScratch* scratch, v1::HeightTile* tile) {
+        return (*job)->MakeTile(index, std::move(stopped), scratch, tile);
+      },
+      threads_, &verifier, on_tile, std::move(stop));
+}
+
+absl::Status LocalBackend::StreamSurface(
+    const v1::StreamSurfaceRequest& request, const OnSurfaceHeader& on_header,
+    const OnSurfaceTile& on_tile, std::stop_token stop) {
+  const absl::StatusOr<std::shared_ptr<const server::SurfaceJob>> job =
+      actor_->OpenSurface(request);
+  if (!job.ok()) return job.status();
+  SurfaceVerifier verifier(request);
+  absl::Status status = verifier.CheckHeader((*job)->header());
+  if (status.ok()) status = on_header((*job)->header());
+  if (!status.ok()) return status;
+  return HandOut<v1::StreamSurfaceResponse>(
+      **job,
+      [&job](std::int64_t index, std::stop_token stopped, core::TileScratch*,
+             v1::StreamSurfaceResponse* tile) {
+        return (*job)->MakeTile(index, std::move(stopped), tile);
+      },
+      threads_, &verifier, on_tile, std::move(stop));
+}
+
+absl::StatusOr<v1::PreparedTerrain> LocalBackend::PrepareTerrain(
+    const v1::PrepareTerrainRequest& request,
+    const OnPrepareProgress& on_progress, std::stop_token stop) {
+  return actor_->PrepareTerrain(request, on_progress, stop);
 }
 
 absl::StatusOr<v1::GetProfileResponse> LocalBackend::GetProfile(
@@ -151,9 +202,20 @@ absl::StatusOr<v1::GetServerInfoResponse> LocalBackend::GetServerInfo(
   return actor_->GetServerInfo();
 }
 
+absl::StatusOr<v1::EstimateSurfaceResponse> LocalBackend::EstimateSurface(
+    const v1::EstimateSurfaceRequest& request, std::stop_token) {
+  return actor_->EstimateSurface(request);
+}
+
+absl::StatusOr<v1::GetSurfacePresetResponse> LocalBackend::GetSurfacePreset(
+    const v1::GetSurfacePresetRequest& request, std::stop_token) {
+  return actor_->GetSurfacePreset(request);
+}
+
 absl::StatusOr<std::string> LocalBackend::UploadRaster(
     std::shared_ptr<const core::Raster> raster, std::stop_token) {
-  const std::unique_ptr<server::RasterUpload> upload = actor_->BeginUpload();
+  const std::unique_ptr<server::RasterUpload> upload =
+      actor_->BeginRasterUpload();
   const absl::Status sent = SendRaster(
       *raster,
       [&](const v1::UploadRasterRequest& part) { return upload->Add(part); });
@@ -166,6 +228,20 @@ absl::StatusOr<std::string> LocalBackend::UploadRaster(
 absl::StatusOr<v1::GetRasterResponse> LocalBackend::GetRaster(
     const v1::GetRasterRequest& request, std::stop_token) {
   return actor_->GetRaster(request);
+}
+
+absl::StatusOr<std::string> LocalBackend::UploadSpotTable(
+    std::shared_ptr<const SpotTable> table, std::stop_token) {
+  const std::unique_ptr<server::SpotTableUpload> upload =
+      actor_->BeginSpotTableUpload();
+  const absl::Status sent =
+      SendSpotTable(*table, [&](const v1::UploadSpotTableRequest& part) {
+        return upload->Add(part);
+      });
+  if (!sent.ok()) return sent;
+  absl::StatusOr<v1::UploadSpotTableResponse> response = upload->Finish();
+  if (!response.ok()) return response.status();
+  return response->table_id();
 }
 
 }  // namespace terrane::client

@@ -22,6 +22,9 @@ class LocalBackend : public Backend {
   absl::Status StreamTiles(const v1::StreamTilesRequest& request,
                            const OnHeader& on_header, const OnTile& on_tile,
                            std::stop_token stop) override;
+  absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(
+      const v1::PrepareTerrainRequest& request,
+      const OnPrepareProgress& on_progress, std::stop_token stop) override;
   absl::StatusOr<v1::GetProfileResponse> GetProfile(
       const v1::GetProfileRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::GetHeightsResponse> GetHeights(
@@ -32,11 +35,22 @@ class LocalBackend : public Backend {
       const v1::GetPresetRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::GetServerInfoResponse> GetServerInfo(
       std::stop_token stop) override;
+  absl::Status StreamSurface(const v1::StreamSurfaceRequest& request,
+                             const OnSurfaceHeader& on_header,
+                             const OnSurfaceTile& on_tile,
+                             std::stop_token stop) override;
+  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest& request,
+      std::stop_token stop) override;
   absl::StatusOr<std::string> UploadRaster(
       std::shared_ptr<const core::Raster> raster,
       std::stop_token stop) override;
   absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest& request, std::stop_token stop) override;
+  absl::StatusOr<std::string> UploadSpotTable(
+      std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
 
  private:
   int threads_;

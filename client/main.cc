@@ -12,15 +12,18 @@ int main(int argc, char** argv) {
   // Before any thread starts, so that they all leave the signals to it.
   const Interrupt interrupt;
 
-  CLI::App app("Fractal terrain: from a server, or made here with --local.",
-               "terrane");
+  CLI::App app(
+      "Fractal terrain and surfaces: from a server, or made here with --local.",
+      "terrane");
   app.set_version_flag("--version", TERRANE_VERSION);
   app.require_subcommand(1);
   Action action;
   AddTerrainCommand(&app, &action);
   AddProfileCommand(&app, &action);
   AddHeightsCommand(&app, &action);
+  AddSurfaceCommand(&app, &action);
   AddRenderCommand(&app, &action);
+  AddVerifyCommand(&app, &action);
   AddPresetsCommand(&app, &action);
   AddInfoCommand(&app, &action);
   try {

@@ -21,46 +21,69 @@ void Print(const std::string& text) {
 
 }  // namespace
 
-Progress::Progress(ProgressMode mode, std::int64_t total_samples)
+ProgressLine::ProgressLine(ProgressMode mode)
     : form_(mode == ProgressMode::kJson ? Form::kJson
             : mode == ProgressMode::kAuto && isatty(STDERR_FILENO) != 0
                 ? Form::kBar
-                : Form::kNothing),
-      total_(std::max<std::int64_t>(total_samples, 1)) {}
+                : Form::kNothing) {}
 
-Progress::~Progress() {
+ProgressLine::~ProgressLine() {
   if (form_ == Form::kBar) Print("\r\033[K");
 }
 
-void Progress::Advance(std::int64_t samples) {
-  done_ += samples;
-  if (form_ == Form::kNothing) return;
+bool ProgressLine::IsDue(bool last) {
+  if (form_ == Form::kNothing) return false;
   const Clock::time_point now = Clock::now();
   const auto interval = form_ == Form::kBar ? kBarInterval : kJsonInterval;
-  if (done_ < total_ && now - shown_ < interval) return;
+  if (!last && now - shown_ < interval) return false;
   shown_ = now;
-  const double seconds = std::chrono::duration<double>(now - start_).count();
-  if (form_ == Form::kBar) {
-    DrawBar(seconds);
-  } else {
-    PrintJson(seconds);
-  }
+  return true;
 }
 
-void Progress::DrawBar(double seconds) const {
-  const double share =
-      std::min(static_cast<double>(done_) / static_cast<double>(total_), 1.0);
+double ProgressLine::seconds() const {
+  return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+void ProgressLine::DrawBar(double share, const std::string& what) const {
+  share = std::clamp(share, 0.0, 1.0);
   const auto full = static_cast<std::size_t>(share * kBarWidth);
-  const double rate = seconds > 0 ? static_cast<double>(done_) / seconds : 0;
-  const double left = rate > 0 ? static_cast<double>(total_ - done_) / rate : 0;
-  Print(fmt::format("\r\033[K[{}{}] {:3.0f} %  {}samples/s  {} left",
-                    std::string(full, '='), std::string(kBarWidth - full, ' '),
-                    share * 100, ShortNumber(rate), ClockText(left)));
+  Print(fmt::format("\r\033[K[{}{}] {:3.0f} %  {}", std::string(full, '='),
+                    std::string(kBarWidth - full, ' '), share * 100, what));
 }
 
-void Progress::PrintJson(double seconds) const {
-  Print(fmt::format("{{\"samples\":{},\"total\":{},\"seconds\":{:.3f}}}\n",
-                    done_, total_, seconds));
+void ProgressLine::PrintJson(const std::string& object) const {
+  Print(object + '\n');
+}
+
+Progress::Progress(ProgressMode mode, std::int64_t total_samples)
+    : ProgressLine(mode), total_(std::max<std::int64_t>(total_samples, 1)) {}
+
+void Progress::Advance(std::int64_t samples) {
+  done_ += samples;
+  if (!IsDue(done_ >= total_)) return;
+  if (form() == Form::kJson) {
+    PrintJson(fmt::format("{{\"samples\":{},\"total\":{},\"seconds\":{:.3f}}}",
+                          done_, total_, seconds()));
+    return;
+  }
+  const double rate =
+      seconds() > 0 ? static_cast<double>(done_) / seconds() : 0;
+  const double left = rate > 0 ? static_cast<double>(total_ - done_) / rate : 0;
+  DrawBar(
+      static_cast<double>(done_) / static_cast<double>(total_),
+      fmt::format("{}samples/s  {} left", ShortNumber(rate), ClockText(left)));
+}
+
+void PreparationProgress::Show(double fraction) {
+  if (!IsDue(fraction >= 1)) return;
+  if (form() == Form::kJson) {
+    PrintJson(fmt::format("{{\"prepared\":{:.3f},\"seconds\":{:.3f}}}",
+                          fraction, seconds()));
+    return;
+  }
+  const double left = fraction > 0 ? seconds() * (1 - fraction) / fraction : 0;
+  DrawBar(fraction,
+          fmt::format("meeting spot heights  {} left", ClockText(left)));
 }
 
 std::string ShortNumber(double value) {

@@ -13,29 +13,52 @@ namespace terrane::client {
 // stay readable.
 enum class ProgressMode { kAuto, kNone, kJson };
 
-class Progress {
- public:
-  Progress(ProgressMode mode, std::int64_t total_samples);
+// What both kinds share: the form, and how often it is shown.
+class ProgressLine {
+ protected:
+  explicit ProgressLine(ProgressMode mode);
   // Removes the bar.
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // Shows at most ten times a second (JSON: once), and the last step always.
-  void Advance(std::int64_t samples);
+  enum class Form { kNothing, kBar, kJson };
+
+  // Whether to show now: at most ten times a second (JSON: once), and the last
+  // step always.
+  bool IsDue(bool last);
+  double seconds() const;
+  Form form() const { return form_; }
+  void DrawBar(double share, const std::string& what) const;
+  void PrintJson(const std::string& object) const;
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class Form { kNothing, kBar, kJson };
 
-  void DrawBar(double seconds) const;
-  void PrintJson(double seconds) const;
-
-  Form form_;
-  std::int64_t total_;
-  std::int64_t done_ = 0;
-  Clock::time_point start_ = Clock::now();
+  const Form form_;
+  const Clock::time_point start_ = Clock::now();
   Clock::time_point shown_;
+};
+
+// Of samples that are streamed.
+class Progress : private ProgressLine {
+ public:
+  Progress(ProgressMode mode, std::int64_t total_samples);
+
+  void Advance(std::int64_t samples);
+
+ private:
+  const std::int64_t total_;
+  std::int64_t done_ = 0;
+};
+
+// Of a recipe that is made ready.
+class PreparationProgress : private ProgressLine {
+ public:
+  explicit PreparationProgress(ProgressMode mode) : ProgressLine(mode) {}
+
+  // `fraction` of the work is done, 0 to 1.
+  void Show(double fraction);
 };
 
 // "12.3 M": three digits and a unit of thousands.

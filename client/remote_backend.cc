@@ -10,9 +10,12 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <set>
 #include <utility>
 
 #include "client/raster_upload.h"
+#include "client/spot_upload.h"
+#include "client/surface_verifier.h"
 
 namespace terrane::client {
 namespace {
@@ -70,6 +73,22 @@ class CancelOnStop {
   std::stop_callback<Cancel> callback_;
 };
 
+// Writes the parts that `send` makes of the content, and ends the call.
+template <typename Content, typename Request>
+grpc::Status WriteParts(
+    const Content& content,
+    absl::Status (*send)(const Content&,
+                         const std::function<absl::Status(const Request&)>&),
+    grpc::ClientWriter<Request>* writer) {
+  // A refused part shows as the status of Finish.
+  const absl::Status sent = send(content, [&](const Request& part) {
+    return writer->Write(part) ? absl::OkStatus()
+                               : absl::CancelledError("refused");
+  });
+  if (sent.ok()) writer->WritesDone();
+  return writer->Finish();
+}
+
 bool IsThisMachine(const std::string& target) {
   return target.starts_with("127.") || target.starts_with("localhost:") ||
          target.starts_with("[::1]:");
@@ -88,12 +107,23 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& target) {
                                    arguments);
 }
 
+// What a message that is no header brings.
+const v1::HeightTile& TileOf(const v1::StreamTilesResponse& message) {
+  return message.tile();
+}
+const v1::StreamSurfaceResponse& TileOf(
+    const v1::StreamSurfaceResponse& message) {
+  return message;
+}
+
 }  // namespace
 
 RemoteBackend::RemoteBackend(const std::string& target) : target_(target) {
   const std::shared_ptr<grpc::Channel> channel = MakeChannel(target);
   terrain_ = v1::TerrainService::NewStub(channel);
+  surface_ = v1::SurfaceService::NewStub(channel);
   raster_ = v1::RasterService::NewStub(channel);
+  spot_table_ = v1::SpotTableService::NewStub(channel);
   info_ = v1::InfoService::NewStub(channel);
 }
 
@@ -102,16 +132,15 @@ absl::Status RemoteBackend::Run(CallKind kind,
                                 std::stop_token stop) {
   int failures = 0;
   int allowed = kTriesBeforeContact;
-  bool uploaded_again = false;
+  std::set<std::string> uploaded_again;
   while (true) {
     const Attempt result = attempt();
     const RemoteError& error = result.error;
     if (error.status.ok() || result.final) return error.status;
     if (stop.stop_requested()) return absl::CancelledError("interrupted");
-    if (error.reason == "RASTER_NOT_FOUND" && !uploaded_again &&
-        rasters_.contains(error.raster_id)) {
-      uploaded_again = true;
-      const absl::Status status = UploadAgain(error.raster_id, stop);
+    if (uploads_.contains(error.missing_content) &&
+        uploaded_again.insert(error.missing_content).second) {
+      const absl::Status status = UploadAgain(error.missing_content, stop);
       if (!status.ok()) return status;
       continue;
     }
@@ -154,24 +183,52 @@ absl::Status RemoteBackend::StreamTiles(const v1::StreamTilesRequest& request,
                                         const OnTile& on_tile,
                                         std::stop_token stop) {
   TileVerifier verifier(request);
+  v1::StreamTilesRequest rest = request;
+  const auto open = [&](grpc::ClientContext* context) {
+    rest.set_first_tile(verifier.next_index());
+    return terrain_->StreamTiles(context, rest);
+  };
   return Run(
       CallKind::kStream,
-      [&] { return StreamOnce(request, on_header, on_tile, stop, &verifier); },
+      [&] {
+        return StreamOnce<v1::StreamTilesResponse>(open, on_header, on_tile,
+                                                   stop, &verifier);
+      },
       stop);
 }
 
-RemoteBackend::Attempt RemoteBackend::StreamOnce(
-    const v1::StreamTilesRequest& request, const OnHeader& on_header,
-    const OnTile& on_tile, std::stop_token stop, TileVerifier* verifier) {
-  v1::StreamTilesRequest rest = request;
-  rest.set_first_tile(verifier->next_index());
+absl::Status RemoteBackend::StreamSurface(
+    const v1::StreamSurfaceRequest& request, const OnSurfaceHeader& on_header,
+    const OnSurfaceTile& on_tile, std::stop_token stop) {
+  SurfaceVerifier verifier(request);
+  v1::StreamSurfaceRequest rest = request;
+  const auto open = [&](grpc::ClientContext* context) {
+    rest.set_first_tile(verifier.next_index());
+    return surface_->StreamSurface(context, rest);
+  };
+  return Run(
+      CallKind::kStream,
+      [&] {
+        return StreamOnce<v1::StreamSurfaceResponse>(open, on_header, on_tile,
+                                                     stop, &verifier);
+      },
+      stop);
+}
+
+template <typename Message, typename Open, typename Header, typename Tile,
+          typename Verifier>
+RemoteBackend::Attempt RemoteBackend::StreamOnce(const Open& open,
+                                                 const Header& on_header,
+                                                 const Tile& on_tile,
+                                                 std::stop_token stop,
+                                                 Verifier* verifier) {
   grpc::ClientContext context;
   const CancelOnStop cancel(stop, &context);
-  const auto reader = terrain_->StreamTiles(&context, rest);
+  const auto reader = open(&context);
 
   Attempt attempt;
   absl::Status status;
-  v1::StreamTilesResponse message;
+  Message message;
   while (status.ok() && reader->Read(&message)) {
     if (message.has_header()) {
       const bool first = !verifier->has_header();
@@ -182,9 +239,9 @@ RemoteBackend::Attempt RemoteBackend::StreamOnce(
         attempt.progressed = true;
       }
     } else {
-      status = verifier->CheckTile(message.tile());
+      status = verifier->CheckTile(TileOf(message));
       if (status.ok()) {
-        status = on_tile(message.tile());
+        status = on_tile(TileOf(message));
         attempt.final = !status.ok();
         attempt.progressed = true;
       }
@@ -250,51 +307,125 @@ absl::StatusOr<v1::GetServerInfoResponse> RemoteBackend::GetServerInfo(
                                           v1::GetServerInfoRequest(), stop);
 }
 
+absl::StatusOr<v1::EstimateSurfaceResponse> RemoteBackend::EstimateSurface(
+    const v1::EstimateSurfaceRequest& request, std::stop_token stop) {
+  return Unary<v1::EstimateSurfaceResponse>(
+      surface_.get(), &v1::SurfaceService::Stub::EstimateSurface, request,
+      stop);
+}
+
+absl::StatusOr<v1::GetSurfacePresetResponse> RemoteBackend::GetSurfacePreset(
+    const v1::GetSurfacePresetRequest& request, std::stop_token stop) {
+  return Unary<v1::GetSurfacePresetResponse>(
+      surface_.get(), &v1::SurfaceService::Stub::GetSurfacePreset, request,
+      stop);
+}
+
 absl::StatusOr<v1::GetRasterResponse> RemoteBackend::GetRaster(
     const v1::GetRasterRequest& request, std::stop_token stop) {
   return Unary<v1::GetRasterResponse>(
       raster_.get(), &v1::RasterService::Stub::GetRaster, request, stop);
 }
 
-absl::StatusOr<std::string> RemoteBackend::UploadRaster(
-    std::shared_ptr<const core::Raster> raster, std::stop_token stop) {
-  std::string raster_id;
+absl::StatusOr<v1::PreparedTerrain> RemoteBackend::PrepareTerrain(
+    const v1::PrepareTerrainRequest& request,
+    const OnPrepareProgress& on_progress, std::stop_token stop) {
+  v1::PreparedTerrain prepared;
   const absl::Status status = Run(
-      CallKind::kUnary, [&] { return UploadOnce(*raster, stop, &raster_id); },
-      stop);
+      CallKind::kUnary,
+      [&] { return PrepareOnce(request, on_progress, stop, &prepared); }, stop);
   if (!status.ok()) return status;
-  rasters_[raster_id] = std::move(raster);
-  return raster_id;
+  return prepared;
 }
 
-absl::Status RemoteBackend::UploadAgain(const std::string& raster_id,
+RemoteBackend::Attempt RemoteBackend::PrepareOnce(
+    const v1::PrepareTerrainRequest& request,
+    const OnPrepareProgress& on_progress, std::stop_token stop,
+    v1::PreparedTerrain* prepared) {
+  grpc::ClientContext context;
+  const CancelOnStop cancel(stop, &context);
+  const auto reader = terrain_->PrepareTerrain(&context, request);
+  Attempt attempt;
+  bool complete = false;
+  v1::PrepareTerrainResponse message;
+  while (reader->Read(&message)) {
+    attempt.progressed = true;
+    if (message.has_prepared()) {
+      *prepared = message.prepared();
+      complete = true;
+    } else if (on_progress) {
+      on_progress(message.progress().fraction());
+    }
+  }
+  attempt.error = DecodeStatus(reader->Finish());
+  if (attempt.error.status.ok() && !complete) {
+    attempt.error.status =
+        absl::DataLossError("the server ended without a prepared terrain");
+  }
+  return attempt;
+}
+
+absl::StatusOr<std::string> RemoteBackend::UploadRaster(
+    std::shared_ptr<const core::Raster> raster, std::stop_token stop) {
+  return Upload(
+      [this, raster](std::stop_token upload_stop, std::string* id) {
+        return UploadRasterOnce(*raster, std::move(upload_stop), id);
+      },
+      stop);
+}
+
+absl::StatusOr<std::string> RemoteBackend::UploadSpotTable(
+    std::shared_ptr<const SpotTable> table, std::stop_token stop) {
+  return Upload(
+      [this, table](std::stop_token upload_stop, std::string* id) {
+        return UploadTableOnce(*table, std::move(upload_stop), id);
+      },
+      stop);
+}
+
+absl::StatusOr<std::string> RemoteBackend::Upload(const UploadContent& upload,
+                                                  std::stop_token stop) {
+  std::string content_id;
+  const absl::Status status = Run(
+      CallKind::kUnary, [&] { return upload(stop, &content_id); }, stop);
+  if (!status.ok()) return status;
+  uploads_.insert_or_assign(content_id, upload);
+  return content_id;
+}
+
+absl::Status RemoteBackend::UploadAgain(const std::string& content_id,
                                         std::stop_token stop) {
-  const absl::StatusOr<std::string> answer =
-      UploadRaster(rasters_.at(raster_id), stop);
+  // A copy: the upload keeps itself anew.
+  const UploadContent upload = uploads_.at(content_id);
+  const absl::StatusOr<std::string> answer = Upload(upload, stop);
   if (!answer.ok()) return answer.status();
-  if (*answer != raster_id) {
-    return absl::DataLossError("the server calls raster " + raster_id +
+  if (*answer != content_id) {
+    return absl::DataLossError("the server calls the content " + content_id +
                                " now " + *answer);
   }
   return absl::OkStatus();
 }
 
-RemoteBackend::Attempt RemoteBackend::UploadOnce(const core::Raster& raster,
-                                                 std::stop_token stop,
-                                                 std::string* raster_id) {
+RemoteBackend::Attempt RemoteBackend::UploadRasterOnce(
+    const core::Raster& raster, std::stop_token stop, std::string* raster_id) {
   grpc::ClientContext context;
   const CancelOnStop cancel(stop, &context);
   v1::UploadRasterResponse response;
   const auto writer = raster_->UploadRaster(&context, &response);
-  // A refused part shows as the status of Finish.
-  const absl::Status sent =
-      SendRaster(raster, [&](const v1::UploadRasterRequest& part) {
-        return writer->Write(part) ? absl::OkStatus()
-                                   : absl::CancelledError("refused");
-      });
-  if (sent.ok()) writer->WritesDone();
-  Attempt attempt{DecodeStatus(writer->Finish())};
+  Attempt attempt{DecodeStatus(WriteParts(raster, SendRaster, writer.get()))};
   *raster_id = response.raster_id();
+  return attempt;
+}
+
+RemoteBackend::Attempt RemoteBackend::UploadTableOnce(const SpotTable& table,
+                                                      std::stop_token stop,
+                                                      std::string* table_id) {
+  grpc::ClientContext context;
+  const CancelOnStop cancel(stop, &context);
+  v1::UploadSpotTableResponse response;
+  const auto writer = spot_table_->UploadSpotTable(&context, &response);
+  Attempt attempt{DecodeStatus(WriteParts(table, SendSpotTable, writer.get()))};
+  *table_id = response.table_id();
   return attempt;
 }
 

@@ -2,11 +2,13 @@
 //
 // What it adds to the generated stubs: errors with their violations; every tile
 // verified; a cut stream resumed at the tile that is missing, with bounded,
-// jittered waits; a raster that the server has evicted uploaded again, once a
-// call. A server that was never reached is given up within a second.
+// jittered waits; a raster or spot table that the server has evicted uploaded
+// again, once a call. A server that was never reached is given up within a
+// second.
 #ifndef TERRANE_CLIENT_REMOTE_BACKEND_H_
 #define TERRANE_CLIENT_REMOTE_BACKEND_H_
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <random>
@@ -17,6 +19,8 @@
 #include "client/tile_verifier.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
+#include "terrane/v1/spot_table.grpc.pb.h"
+#include "terrane/v1/surface.grpc.pb.h"
 #include "terrane/v1/terrain.grpc.pb.h"
 
 namespace terrane::client {
@@ -29,6 +33,9 @@ class RemoteBackend : public Backend {
   absl::Status StreamTiles(const v1::StreamTilesRequest& request,
                            const OnHeader& on_header, const OnTile& on_tile,
                            std::stop_token stop) override;
+  absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(
+      const v1::PrepareTerrainRequest& request,
+      const OnPrepareProgress& on_progress, std::stop_token stop) override;
   absl::StatusOr<v1::GetProfileResponse> GetProfile(
       const v1::GetProfileRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::GetHeightsResponse> GetHeights(
@@ -39,11 +46,22 @@ class RemoteBackend : public Backend {
       const v1::GetPresetRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::GetServerInfoResponse> GetServerInfo(
       std::stop_token stop) override;
+  absl::Status StreamSurface(const v1::StreamSurfaceRequest& request,
+                             const OnSurfaceHeader& on_header,
+                             const OnSurfaceTile& on_tile,
+                             std::stop_token stop) override;
+  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest& request,
+      std::stop_token stop) override;
   absl::StatusOr<std::string> UploadRaster(
       std::shared_ptr<const core::Raster> raster,
       std::stop_token stop) override;
   absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest& request, std::stop_token stop) override;
+  absl::StatusOr<std::string> UploadSpotTable(
+      std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
 
  private:
   // What became of one try of a call.
@@ -59,12 +77,25 @@ class RemoteBackend : public Backend {
   absl::Status Run(CallKind kind, const std::function<Attempt()>& attempt,
                    std::stop_token stop);
   bool Wait(const RemoteError& error, int failures, std::stop_token stop);
-  absl::Status UploadAgain(const std::string& raster_id, std::stop_token stop);
-  Attempt UploadOnce(const core::Raster& raster, std::stop_token stop,
-                     std::string* raster_id);
-  Attempt StreamOnce(const v1::StreamTilesRequest& request,
-                     const OnHeader& on_header, const OnTile& on_tile,
-                     std::stop_token stop, TileVerifier* verifier);
+  // Uploads content, and keeps how to do it again.
+  using UploadContent = std::function<Attempt(std::stop_token, std::string*)>;
+  absl::StatusOr<std::string> Upload(const UploadContent& upload,
+                                     std::stop_token stop);
+  absl::Status UploadAgain(const std::string& content_id, std::stop_token stop);
+  Attempt UploadRasterOnce(const core::Raster& raster, std::stop_token stop,
+                           std::string* raster_id);
+  Attempt UploadTableOnce(const SpotTable& table, std::stop_token stop,
+                          std::string* table_id);
+  Attempt PrepareOnce(const v1::PrepareTerrainRequest& request,
+                      const OnPrepareProgress& on_progress,
+                      std::stop_token stop, v1::PreparedTerrain* prepared);
+  // One try of a stream: `open` starts it at the tile that is missing, the
+  // verifier knows which.
+  template <typename Message, typename Open, typename Header, typename Tile,
+            typename Verifier>
+  Attempt StreamOnce(const Open& open, const Header& on_header,
+                     const Tile& on_tile, std::stop_token stop,
+                     Verifier* verifier);
 
   // One unary call; `method` is a member of the stub.
   template <typename Response, typename Stub, typename Method, typename Request>
@@ -73,10 +104,12 @@ class RemoteBackend : public Backend {
 
   std::string target_;
   std::unique_ptr<v1::TerrainService::Stub> terrain_;
+  std::unique_ptr<v1::SurfaceService::Stub> surface_;
   std::unique_ptr<v1::RasterService::Stub> raster_;
+  std::unique_ptr<v1::SpotTableService::Stub> spot_table_;
   std::unique_ptr<v1::InfoService::Stub> info_;
-  // Rasters uploaded so far, by id.
-  std::map<std::string, std::shared_ptr<const core::Raster>> rasters_;
+  // What was uploaded so far, by id.
+  std::map<std::string, UploadContent> uploads_;
   // Jitter of the waits; never touches a height.
   std::mt19937 jitter_{std::random_device{}()};
 };

@@ -1,6 +1,7 @@
 #include "client/status_details.h"
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "core/base/violations.h"
@@ -11,6 +12,17 @@ namespace {
 
 // No server asks for more than this in earnest.
 constexpr std::int64_t kMaxRetryDelaySeconds = 3600;
+
+// The reasons of ErrorInfo that an upload mends, and the key of the content's
+// id.
+struct MissingContent {
+  const char* reason;
+  const char* key;
+};
+constexpr std::array<MissingContent, 2> kMissingContents = {{
+    {"RASTER_NOT_FOUND", "raster_id"},
+    {"SPOT_TABLE_NOT_FOUND", "table_id"},
+}};
 
 // The details travel under the type URLs of google.rpc, whose field numbers the
 // messages of terrane.v1 have; so the name after the last slash tells them
@@ -32,9 +44,12 @@ void AddDetail(const google::protobuf::Any& detail,
   } else if (type == "google.rpc.ErrorInfo") {
     v1::ErrorInfo info;
     if (!info.ParseFromString(detail.value())) return;
-    error->reason = info.reason();
-    const auto raster = info.metadata().find("raster_id");
-    if (raster != info.metadata().end()) error->raster_id = raster->second;
+    for (const MissingContent& missing : kMissingContents) {
+      const auto id = info.metadata().find(missing.key);
+      if (info.reason() == missing.reason && id != info.metadata().end()) {
+        error->missing_content = id->second;
+      }
+    }
   } else if (type == "google.rpc.RetryInfo") {
     v1::RetryInfo retry;
     if (!retry.ParseFromString(detail.value())) return;

@@ -1,5 +1,6 @@
 // What a gRPC status says beyond its code: decodes grpc-status-details-bin into
-// an absl::Status with violations, a reason and the time to wait. Threads: any.
+// an absl::Status with violations, content to upload again, time to wait.
+// Threads: any.
 #ifndef TERRANE_CLIENT_STATUS_DETAILS_H_
 #define TERRANE_CLIENT_STATUS_DETAILS_H_
 
@@ -16,10 +17,9 @@ namespace terrane::client {
 struct RemoteError {
   // The gRPC code and message; INVALID_ARGUMENT carries the violations.
   absl::Status status;
-  // ErrorInfo.reason, such as "RASTER_NOT_FOUND"; empty when there is none.
-  std::string reason;
-  // ErrorInfo.metadata["raster_id"]; empty when there is none.
-  std::string raster_id;
+  // Id of uploaded content that the server does not keep, or no longer: a
+  // raster or a spot table. Empty when the error is another.
+  std::string missing_content;
   // RetryInfo: wait at least this long.
   std::optional<std::chrono::milliseconds> retry_delay;
 };

@@ -107,6 +107,14 @@ TerrainSummary TerrainExport::Summary() const {
   if (header_.has_deviation_bound()) {
     summary.set_deviation_bound(header_.deviation_bound());
   }
+  if (header_.has_spots()) {
+    const v1::SpotReport& report = header_.spots();
+    SpotSummary* spots = summary.mutable_spots();
+    spots->set_spots(static_cast<double>(report.spots()));
+    spots->set_level(report.level());
+    spots->set_largest_move(report.largest_move());
+    spots->set_merged(static_cast<double>(report.merged()));
+  }
   return summary;
 }
 

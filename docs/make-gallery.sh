@@ -47,6 +47,21 @@ preset() {
 *What to see.* $look"
 }
 
+# surface NAME LOOK [OPTION...]: a preset of a surface.
+surface() {
+  local name=$1 look=$2 file=surface-${1#*/}
+  shift 2
+  local about title description
+  about=$("$terrane" presets "$name" --local)
+  title=$(sed -n '1s/^[^:]*: //p' <<<"$about")
+  description=$(sed -n 3p <<<"$about")
+  run render --local --preset "$name" --width 700 "$@" --out "$pictures/$file.png"
+  say "### Surface, ${title,}" ""
+  picture "$file" "$title" "$description
+
+*What to see.* $look"
+}
+
 cat >"$page" <<'TEXT'
 # Gallery
 
@@ -55,12 +70,14 @@ stands above the commands that draw it again, bit for bit on any machine; run th
 root of the tree with `build/release/bin` in the path.
 
 - [A real elevation model, refined](#a-real-elevation-model-refined)
+- [Spot heights](#spot-heights)
 - [Ground to start from](#ground-to-start-from)
 - [Sources and mappings](#sources-and-mappings)
 - [The paper's figures](#the-papers-figures)
 - [Other readings of D](#other-readings-of-d)
+- [Free-form surfaces](#free-form-surfaces)
 
-How it all works is in [terrain.md](terrain.md).
+How it all works is in [terrain.md](terrain.md) and [surface.md](surface.md).
 
 ## A real elevation model, refined
 
@@ -96,6 +113,26 @@ picture jacksboro-block "The refined model as a block" \
 
 *What to see.* Two long straight walls that meet, rugged mountains in the west and the low
 country in the east, down to slopes of a few samples."
+
+say "## Spot heights" "" "Heights that are met exactly, see [terrain.md](terrain.md#spot-heights)." ""
+docs/spot-comparison.py "$terrane" >"$work/comparison.md"
+commands+=("docs/spot-comparison.py")
+run render --side-by-side out/spots/{original,spot-heights,inverse-distance,thin-plate}.tif --width 403 --out "$pictures/spots-jacksboro.png"
+picture spots-jacksboro "One post in a hundred, and the rest made again" \
+  "The model on the left. Then three maps that know one post in a hundred of it, picked at random
+and met exactly by each: spot heights over a flat macro shape, inverse distance, and a thin-plate
+spline. Below, the framed part of each.
+
+*What to see.* The terrain is as rough as the model over four posts and more, and rougher from
+post to post; it is calm where the model is calm, and nothing shows where its 1,386 spots are.
+Inverse distance has a pimple at each, and the spline a blister. No map has the model's valleys and
+straight walls: one post in a hundred does not tell of them. [Variograms and errors](terrain.md#compared-with-interpolation)."
+
+preset demo/spots "Mountains where the five heights ask for them, as rough as the ground around, and a
+river valley from the upper left to the lower right. No height shows as a spike, a cone or a disc."
+run render --local --preset demo/spots --show-spots --out "$pictures/spots-marked.png"
+picture spots-marked "The heights that were given" \
+  "The same map with the five points and the river drawn on it."
 
 say "## Ground to start from" "" "Presets with SUBDIVISION and LINEAR, the defaults, in metres and without a border." ""
 preset demo/hills "No grid, no creases and no direction that stands out."
@@ -140,3 +177,22 @@ say "## Other readings of D" ""
 preset fbm/cloud "Banks and wisps at every scale, longer than they are high." --width 768
 preset fbm/waves "Long crests of the swell, with smaller waves that run along and across them." --width 960
 preset fbm/corrosion "Four pitted spots with soft borders on a plate that is otherwise even, but for hair lines where BOLTZMANN changes sign."
+
+# The surfaces' part.
+say "## Free-form surfaces" "" "Mo, Tan and Zhang, Journal of Software 12, 2001: thirteen figures on one Bézier net of 4 x 4
+points. The paper prints neither the net nor the learning rate mu and the steps K. The net is
+chosen here; all networks are trained to convergence, where mu and K do not matter, but for
+figure 1, which is not trained (K = 0)." ""
+surface surface/fig01 "The patch hangs from the four corners of its polyhedron, under the inner points."
+surface surface/fig02 "The arch of figure 1, rough everywhere; its four corners stay where they were."
+surface surface/fig03 "The shoulder on the right, towards the control point of w21, is higher and steeper than in figure 2; the rest is as it was."
+surface surface/fig04 "A peak near the control point of w11, in front; the slopes that face the viewer are almost smooth."
+surface surface/fig05 "The same peak with jags all over it: only the response has changed."
+surface surface/fig06 "No randomness and no jags: a smooth surface, sunk and raised by the training."
+surface surface/fig07 "The trend of figure 6 under jags of even strength."
+surface surface/fig08 "The arch, jagged where w10 counts, in the middle and in front, and smooth elsewhere; faint furrows run along t, the direction of the carry-over."
+surface surface/fig09 "Figure 8 with longer jags."
+surface surface/fig10 "Fractal in one part, level in the others. Heights are drawn a quarter as high: weights of -12 and 25 multiply." --exaggeration 0.25
+surface surface/fig11 "A high mountain with smooth flanks, and a lower, rough one behind it."
+surface surface/fig12 "A high dune behind and a lower one in front, sand between them, and a ragged hole in each hollow at the sides."
+surface surface/fig13 "Two ridges, one behind the other, with a valley between them; all of it is rough."

@@ -34,6 +34,7 @@ struct Flags {
   bool insecure = false;
   int workers = 0;
   std::int64_t raster_store_mib = 1024;
+  std::int64_t prepared_mib = 2048;
   int drain_seconds = 30;
   std::string log_level = "info";
   std::string log_format = "text";
@@ -69,8 +70,9 @@ std::string Footer() {
          std::to_string(limits.recipe.max_continuous_constraints) +
          " continuous constraints, " +
          std::to_string(limits.recipe.max_vertices) + " vertices, " +
-         std::to_string(limits.recipe.max_macro_parts) +
-         " macro parts a recipe\n\n"
+         std::to_string(limits.recipe.max_macro_parts) + " macro parts,\n  " +
+         std::to_string(limits.recipe.max_inline_spots) +
+         " spot points and as many lines a recipe; more as a table\n\n"
          "Examples:\n"
          "  terrane-server --listen 127.0.0.1:0\n"
          "  terrane-server --workers 4 --log-format json 2>server.log\n"
@@ -110,6 +112,15 @@ void AddFlags(CLI::App* app, Flags* flags) {
   app->add_option("--raster-store-mib", flags->raster_store_mib,
                   "Memory for uploaded rasters, in MiB")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
+      ->capture_default_str();
+  app->add_option("--prepared-mib", flags->prepared_mib,
+                  "Memory for recipes made ready and kept, in MiB; what takes "
+                  "more to make ready is refused")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
+      ->capture_default_str();
+  app->add_option("--max-spots", limits.recipe.max_spots,
+                  "Most spot heights of a recipe")
+      ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
   app->add_option("--drain-seconds", flags->drain_seconds,
                   "Time for running calls to end after SIGTERM or SIGINT")
@@ -194,6 +205,10 @@ int Main(int argc, char** argv) {
     return kExitUsage;
   }
   flags.server.limits.raster_store_bytes = flags.raster_store_mib << 20;
+  flags.server.limits.prepared_bytes = flags.prepared_mib << 20;
+  flags.server.limits.recipe.max_inline_spots =
+      std::min(flags.server.limits.recipe.max_inline_spots,
+               flags.server.limits.recipe.max_spots);
   flags.server.limits.max_raster_samples = std::min(
       flags.server.limits.max_raster_samples,
       flags.server.limits.raster_store_bytes / std::int64_t{sizeof(float)});

@@ -15,7 +15,9 @@ using Action = std::function<int(std::stop_token)>;
 void AddTerrainCommand(CLI::App* app, Action* action);
 void AddProfileCommand(CLI::App* app, Action* action);
 void AddHeightsCommand(CLI::App* app, Action* action);
+void AddSurfaceCommand(CLI::App* app, Action* action);
 void AddRenderCommand(CLI::App* app, Action* action);
+void AddVerifyCommand(CLI::App* app, Action* action);
 void AddPresetsCommand(CLI::App* app, Action* action);
 void AddInfoCommand(CLI::App* app, Action* action);
 

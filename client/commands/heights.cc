@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "client/chosen_spots.h"
 #include "client/commands/command.h"
 #include "client/commands/shared_options.h"
 #include "client/csv.h"
@@ -63,15 +64,19 @@ int Run(const HeightsCommand& command, std::stop_token stop) {
   if (!points.ok()) return ReportStatus(points.status());
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
   const absl::StatusOr<ChosenTerrain> terrain =
-      ChooseTerrain(command.terrain, backend.get(), stop);
+      ChooseTerrain(command.terrain, command.level, backend.get(), stop);
   if (!terrain.ok()) return ReportStatus(terrain.status());
   const absl::StatusOr<v1::GetServerInfoResponse> info =
       backend->GetServerInfo(stop);
   if (!info.ok()) return ReportStatus(info.status());
 
+  const absl::StatusOr<std::optional<v1::SpotReport>> spots =
+      PrepareSpots(*terrain, ProgressMode::kAuto, backend.get(), stop);
+  if (!spots.ok()) return ReportStatus(spots.status());
+
   v1::GetHeightsRequest request;
   *request.mutable_terrain() = terrain->choice;
-  request.set_level(command.level.value_or(DefaultLevel(*terrain)));
+  request.set_level(terrain->level);
   const auto most =
       static_cast<std::size_t>(std::max(info->limits().max_points(), 1));
   const std::size_t count = (*points)[0].size();
@@ -82,6 +87,7 @@ int Run(const HeightsCommand& command, std::stop_token stop) {
                       backend.get(), stop, &request, &text);
     if (!status.ok()) return ReportStatus(status);
   }
+  PrintSpotReport(*spots, *terrain);
   return ReportStatus(WriteText(command.out, text));
 }
 

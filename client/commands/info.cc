@@ -43,10 +43,11 @@ int Run(const InfoCommand& command, std::stop_token stop) {
     return kExitOk;
   }
   std::cout << fmt::format(
-      "terrane {}, terrain revision {}, SIMD {}, {} workers, {} presets\n"
+      "terrane {}, terrain revision {}, surface revision {}, SIMD {}, {} "
+      "workers, {} presets\n"
       "limits:\n",
-      info->version(), info->terrain_revision(), info->simd_target(),
-      info->workers(), info->presets_size());
+      info->version(), info->terrain_revision(), info->surface_revision(),
+      info->simd_target(), info->workers(), info->presets_size());
   PrintLimits(info->limits());
   return kExitOk;
 }

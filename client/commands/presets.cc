@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "client/chosen_surface.h"
 #include "client/commands/command.h"
 #include "client/commands/shared_options.h"
 #include "client/exit_code.h"
@@ -44,15 +45,9 @@ int List(const PresetsCommand& command, Backend* backend,
   return kExitOk;
 }
 
-int Show(const PresetsCommand& command, Backend* backend,
-         std::stop_token stop) {
-  v1::GetPresetRequest request;
-  request.set_name(command.name);
-  const absl::StatusOr<v1::GetPresetResponse> answer =
-      backend->GetPreset(request, stop);
-  if (!answer.ok()) return ReportStatus(answer.status());
-  const v1::TerrainPreset& preset = answer->preset();
-  // Only what the recipe sets: a file to edit, not a list of defaults.
+// Only what the recipe sets: a file to edit, not a list of defaults.
+template <typename Preset>
+void Print(const PresetsCommand& command, const Preset& preset) {
   google::protobuf::util::JsonPrintOptions options;
   options.preserve_proto_field_names = true;
   options.add_whitespace = true;
@@ -64,6 +59,25 @@ int Show(const PresetsCommand& command, Backend* backend,
               << preset.description() << "\n\n";
   }
   std::cout << recipe;
+}
+
+int Show(const PresetsCommand& command, Backend* backend,
+         std::stop_token stop) {
+  if (IsSurfacePreset(command.name)) {
+    v1::GetSurfacePresetRequest request;
+    request.set_name(command.name);
+    const absl::StatusOr<v1::GetSurfacePresetResponse> answer =
+        backend->GetSurfacePreset(request, stop);
+    if (!answer.ok()) return ReportStatus(answer.status());
+    Print(command, answer->preset());
+    return kExitOk;
+  }
+  v1::GetPresetRequest request;
+  request.set_name(command.name);
+  const absl::StatusOr<v1::GetPresetResponse> answer =
+      backend->GetPreset(request, stop);
+  if (!answer.ok()) return ReportStatus(answer.status());
+  Print(command, answer->preset());
   return kExitOk;
 }
 

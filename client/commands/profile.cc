@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "client/chosen_spots.h"
 #include "client/commands/command.h"
 #include "client/commands/shared_options.h"
 #include "client/csv.h"
@@ -16,6 +17,7 @@ namespace {
 constexpr char kFooter[] = R"(Examples:
   terrane profile --preset fbm/fig04b --out profile.csv
   terrane profile --preset fbm/fig04b --seed 3 --level 10 --first 0 --count 512
+  terrane profile --preset fbm/fig04b --level 8 --spots heights.csv --out met.csv
 Columns: x, height D(x), macro shape d(x).)";
 
 struct ProfileCommand {
@@ -30,11 +32,14 @@ struct ProfileCommand {
 int Run(const ProfileCommand& command, std::stop_token stop) {
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
   const absl::StatusOr<ChosenTerrain> terrain =
-      ChooseTerrain(command.terrain, backend.get(), stop);
+      ChooseTerrain(command.terrain, command.level, backend.get(), stop);
   if (!terrain.ok()) return ReportStatus(terrain.status());
+  const absl::StatusOr<std::optional<v1::SpotReport>> spots =
+      PrepareSpots(*terrain, ProgressMode::kAuto, backend.get(), stop);
+  if (!spots.ok()) return ReportStatus(spots.status());
   v1::GetProfileRequest request;
   *request.mutable_terrain() = terrain->choice;
-  request.set_level(command.level.value_or(DefaultLevel(*terrain)));
+  request.set_level(terrain->level);
   request.set_first(command.first);
   request.set_count(command.count);
   const absl::StatusOr<v1::GetProfileResponse> profile =
@@ -46,6 +51,7 @@ int Run(const ProfileCommand& command, std::stop_token stop) {
         fmt::format("{},{},{}\n", profile->first_x() + i * profile->step_x(),
                     profile->heights(i), profile->macro_heights(i));
   }
+  PrintSpotReport(*spots, *terrain);
   return ReportStatus(WriteText(command.out, text));
 }
 

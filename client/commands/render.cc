@@ -9,8 +9,10 @@
 #include <memory>
 #include <numbers>
 
+#include "client/chosen_spots.h"
 #include "client/commands/command.h"
 #include "client/commands/shared_options.h"
+#include "client/commands/surface_options.h"
 #include "client/csv.h"
 #include "client/exit_code.h"
 #include "client/memory_stream.h"
@@ -48,11 +50,16 @@ struct RenderCommand {
   std::optional<double> exaggeration;
   std::optional<double> water_level;
   std::vector<double> marks;
+  bool show_spots = false;
   std::vector<double> light;  // azimuth, altitude; empty: by style
   double turn_deg = PerspectiveOptions().turn_deg;
   double tilt_deg = PerspectiveOptions().tilt_deg;
   std::optional<int> width;
   std::string title;
+  // Surfaces.
+  SurfaceOptions surface;
+  SurfaceSize size;
+  bool control_net = false;
 };
 
 core::Light LightOf(const RenderCommand& command, const core::Light& usual) {
@@ -184,6 +191,47 @@ absl::StatusOr<Picture> DrawGeneratedProfile(const RenderCommand& command,
   return DrawProfile(command, {macro, height});
 }
 
+constexpr Rgb kSpot{0.85, 0.20, 0.15};
+constexpr Rgb kSpotRim{1, 1, 1};
+constexpr Rgb kSpotLine{0.12, 0.30, 0.62};
+
+// The points and lines of the spot heights over a map of the samples in
+// `frame`.
+Picture WithSpots(const Picture& map, const core::Frame& frame,
+                  double pixels_per_sample_x, double pixels_per_sample_y,
+                  const ChosenTerrain& terrain) {
+  Canvas canvas(map.width, map.height, kSpotRim);
+  canvas.Paste(map, 0, 0);
+  const auto pixel = [&](double x, double y) -> PixelPoint {
+    return {
+        ((x - frame.origin_x) / frame.spacing_x + 0.5) * pixels_per_sample_x,
+        ((y - frame.origin_y) / frame.spacing_y + 0.5) * pixels_per_sample_y};
+  };
+  for (const v1::SpotLine& line : terrain.recipe.spots().lines()) {
+    for (int i = 1; i < line.vertices_size(); ++i) {
+      const v1::Point& from = line.vertices(i - 1);
+      const v1::Point& to = line.vertices(i);
+      canvas.DrawLine(pixel(from.x(), from.y()), pixel(to.x(), to.y()), 1.6,
+                      kSpotLine);
+    }
+  }
+  const auto draw_point = [&](double x, double y) {
+    const PixelPoint at = pixel(x, y);
+    canvas.DrawLine(at, at, 8, kSpotRim);
+    canvas.DrawLine(at, at, 5, kSpot);
+  };
+  for (const v1::SpotHeight& point : terrain.recipe.spots().points()) {
+    draw_point(point.x(), point.y());
+  }
+  if (terrain.spots != nullptr) {
+    const SpotTable& table = terrain.spots->table;
+    for (std::size_t i = 0; i < table.rows(); ++i) {
+      draw_point(table.x[i], table.y[i]);
+    }
+  }
+  return canvas.picture();
+}
+
 absl::StatusOr<Picture> DrawGeneratedField(const RenderCommand& command,
                                            const ChosenTerrain& terrain,
                                            int level, Backend* backend,
@@ -200,7 +248,21 @@ absl::StatusOr<Picture> DrawGeneratedField(const RenderCommand& command,
   absl::StatusOr<PlacedRaster> placed =
       StreamToMemory(request, kMaxSamples, backend, stop);
   if (!placed.ok()) return placed.status();
-  return DrawRaster(command, *command.style, *std::move(placed));
+  if (!command.show_spots) {
+    return DrawRaster(command, *command.style, *std::move(placed));
+  }
+  if (command.style == v1::RENDER_STYLE_PERSPECTIVE) {
+    return absl::InvalidArgumentError(
+        "--show-spots: must be a map from above, got --style perspective");
+  }
+  PutNorthUp(&*placed);
+  const absl::StatusOr<Picture> map =
+      DrawRaster(command, *command.style, *placed);
+  if (!map.ok()) return map.status();
+  const core::Raster& raster = placed->raster;
+  return WithSpots(*map, raster.frame,
+                   map->width / static_cast<double>(raster.width),
+                   map->height / static_cast<double>(raster.height), terrain);
 }
 
 // The preset's view, where no option says otherwise.
@@ -228,14 +290,40 @@ absl::StatusOr<Picture> DrawGenerated(const RenderCommand& command,
                                       std::stop_token stop) {
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
   const absl::StatusOr<ChosenTerrain> terrain =
-      ChooseTerrain(command.terrain, backend.get(), stop);
+      ChooseTerrain(command.terrain, command.extent.level, backend.get(), stop);
   if (!terrain.ok()) return terrain.status();
+  const absl::StatusOr<std::optional<v1::SpotReport>> spots =
+      PrepareSpots(*terrain, ProgressMode::kAuto, backend.get(), stop);
+  if (!spots.ok()) return spots.status();
+  PrintSpotReport(*spots, *terrain);
   const RenderCommand viewed = WithView(command, *terrain);
-  const int level = command.extent.level.value_or(DefaultLevel(*terrain));
+  const int level = terrain->level;
   return terrain->recipe.dimensions() == 1
              ? DrawGeneratedProfile(viewed, *terrain, level, backend.get(),
                                     stop)
              : DrawGeneratedField(viewed, *terrain, level, backend.get(), stop);
+}
+
+// A surface is chosen by a preset's name, or by a net.
+bool IsSurface(const RenderCommand& command) {
+  return IsSurfacePreset(command.terrain.preset) ||
+         !command.surface.net_file.empty();
+}
+
+absl::StatusOr<Picture> DrawSurfacePicture(const RenderCommand& command,
+                                           std::stop_token stop) {
+  const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
+  SurfaceOptions surface = command.surface;
+  surface.preset = command.terrain.preset;
+  surface.seed = command.terrain.seed;
+  SurfaceViewOptions options;
+  options.width = command.width.value_or(options.width);
+  options.turn_deg = command.turn_deg;
+  options.tilt_deg = command.tilt_deg;
+  options.exaggeration = command.exaggeration.value_or(1);
+  options.light = LightOf(command, options.light);
+  return DrawSurface(surface, command.size, command.control_net, options,
+                     backend.get(), std::move(stop));
 }
 
 std::string CaptionOf(const std::string& path, const PlacedRaster& placed,
@@ -267,12 +355,12 @@ absl::StatusOr<Picture> DrawSideBySide(const RenderCommand& command) {
   options.light = LightOf(command, options.light);
   options.exaggeration = command.exaggeration.value_or(1);
   std::vector<Panel> panels;
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < placed.size(); ++i) {
     panels.push_back(
         {ViewOf(placed[i].raster), &scales[i],
          CaptionOf(command.side_by_side[i], placed[i], scales[i])});
   }
-  return RenderSideBySide(panels[0], panels[1], options);
+  return RenderSideBySide(panels, options);
 }
 
 int Run(const RenderCommand& command, std::stop_token stop) {
@@ -283,6 +371,7 @@ int Run(const RenderCommand& command, std::stop_token stop) {
   const absl::StatusOr<Picture> picture =
       !command.side_by_side.empty() ? DrawSideBySide(command)
       : !command.input.empty()      ? DrawFile(command)
+      : IsSurface(command)          ? DrawSurfacePicture(command, stop)
                                     : DrawGenerated(command, stop);
   if (!picture.ok()) return ReportStatus(picture.status());
   return ReportStatus(WritePicture(command.out, *picture));
@@ -312,6 +401,9 @@ void AddPictureOptions(CLI::App* app, RenderCommand* command) {
   app->add_option("--marks", command->marks,
                   "X,X,...: verticals in a plotted profile")
       ->delimiter(',')
+      ->group("Picture");
+  app->add_flag("--show-spots", command->show_spots,
+                "Draw the spot heights' points and lines on a generated map")
       ->group("Picture");
   app->add_option("--light", command->light,
                   "AZIMUTH,ALTITUDE of the light in degrees (default: 315,45; "
@@ -358,16 +450,24 @@ void AddRenderCommand(CLI::App* app, Action* action) {
                        "Raster, .r16, .f32 or profile .csv to draw")
           ->check(CLI::ExistingFile);
   subcommand
-      ->add_option("--side-by-side", command->side_by_side,
-                   "Two elevation models: hillshades at the same ground scale")
+      ->add_option(
+          "--side-by-side", command->side_by_side,
+          "Two to four elevation models: hillshades at the same ground "
+          "scale")
       ->check(CLI::ExistingFile)
-      ->expected(2)
+      ->expected(2, 4)
       ->excludes(input);
   subcommand->add_option("--band", command->band, "Band of the raster, from 1")
       ->check(CLI::Range(1, 65535));
   AddPictureOptions(subcommand, command.get());
   AddRecipeOptions(subcommand, &command->terrain);
   AddExtentOptions(subcommand, &command->extent);
+  AddNetOptions(subcommand, &command->surface);
+  AddSizeOption(subcommand, &command->size);
+  subcommand
+      ->add_flag("--control-net", command->control_net,
+                 "Draw the control polyhedron of a surface, too")
+      ->group("Surface");
   AddConnectionOptions(subcommand, &command->connection);
   subcommand->footer(kFooter);
   subcommand->final_callback([command, action] {

@@ -25,6 +25,24 @@ const std::map<std::string, v1::HeightMapping> kMappings = {
 const std::map<std::string, v1::Sampling> kSamplings = {
     {"point", v1::SAMPLING_POINT}, {"area", v1::SAMPLING_AREA}};
 
+void AddSpotOptions(CLI::App* command, TerrainOptions* options) {
+  CLI::Option* spots =
+      command
+          ->add_option("--spots", options->spots.path,
+                       "Spot heights that are met exactly: a CSV with a header "
+                       "(x,y,z), or a vector file that GDAL reads")
+          ->check(CLI::ExistingFile)
+          ->group("Spot heights");
+  AddSpotFileOptions(command, spots, &options->spots);
+  command
+      ->add_option("--spots-level", options->spots_level,
+                   "Level whose lattice the spots snap to (default: --level); "
+                   "another level is another terrain")
+      ->check(CLI::Range(0, 30))
+      ->needs(spots)
+      ->group("Spot heights");
+}
+
 }  // namespace
 
 void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
@@ -49,6 +67,33 @@ std::unique_ptr<Backend> MakeBackend(const ConnectionOptions& options) {
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   return std::make_unique<LocalBackend>(
       options.threads > 0 ? options.threads : std::max(cores, 1));
+}
+
+void AddSpotFileOptions(CLI::App* command, CLI::Option* spots,
+                        SpotFileOptions* options) {
+  command
+      ->add_option("--field", options->field,
+                   "Field or column of the heights (default: z of a CSV, the Z "
+                   "of points and lines)")
+      ->needs(spots)
+      ->group("Spot heights");
+  command
+      ->add_option("--error-field", options->error_field,
+                   "Field or column of the standard errors (default: "
+                   "standard_error or se of a CSV if there, else exact)")
+      ->needs(spots)
+      ->group("Spot heights");
+  command
+      ->add_option("--spots-layer", options->layer,
+                   "Layer of --spots (default: the only one)")
+      ->needs(spots)
+      ->group("Spot heights");
+  command
+      ->add_option("--spots-crs", options->crs,
+                   "CRS of the coordinates in --spots, such as EPSG:4326, x "
+                   "east (default: the layer's own)")
+      ->needs(spots)
+      ->group("Spot heights");
 }
 
 void AddRecipeOptions(CLI::App* command, TerrainOptions* options) {
@@ -88,6 +133,7 @@ void AddRecipeOptions(CLI::App* command, TerrainOptions* options) {
       ->add_option("--fidelity", options->fidelity,
                    "T in squared height units: 0 is the macro shape itself")
       ->group("Terrain");
+  AddSpotOptions(command, options);
 }
 
 void AddTerrainOptions(CLI::App* command, TerrainOptions* options) {

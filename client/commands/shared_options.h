@@ -38,6 +38,10 @@ void AddTerrainOptions(CLI::App* command, TerrainOptions* options);
 // Those of them that a 1-D recipe has.
 void AddRecipeOptions(CLI::App* command, TerrainOptions* options);
 
+// What of the file that `spots` names is read.
+void AddSpotFileOptions(CLI::App* command, CLI::Option* spots,
+                        SpotFileOptions* options);
+
 // Which samples of it.
 struct ExtentOptions {
   std::optional<int> level;

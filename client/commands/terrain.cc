@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 
+#include "client/chosen_spots.h"
 #include "client/commands/command.h"
 #include "client/commands/shared_options.h"
 #include "client/exit_code.h"
@@ -20,6 +21,7 @@ constexpr char kFooter[] = R"(Examples:
   terrane terrain --dem model.tif --level 3 --out finer.tif
   terrane terrain --dem model.tif --tiles all --tile-size 513 --out game/tile.r16
   terrane terrain --local --seed 7 --level 4 --window 0,0,2048,2048 --out world.exr
+  terrane terrain --dem model.tif --spots survey.csv --spots-crs EPSG:4326 --out met.tif
 --out by extension: .tif .png (16-bit) .exr .r16 .f32; .png, .r16 and .f32 get a
 JSON sidecar. Exit codes: 0 ok, 1 error, 2 usage, 3 some files written, 4 server
 not reached, 130 interrupted.)";
@@ -89,7 +91,7 @@ absl::StatusOr<v1::StreamTilesRequest> MakeRequest(
     const TerrainCommand& command, const ChosenTerrain& terrain) {
   v1::StreamTilesRequest request;
   *request.mutable_terrain() = terrain.choice;
-  request.set_level(command.extent.level.value_or(DefaultLevel(terrain)));
+  request.set_level(terrain.level);
   request.set_sampling(command.extent.sampling);
   // Neighbouring POINT tiles share an edge, hence the odd size.
   const bool shared_edge =
@@ -111,13 +113,16 @@ absl::StatusOr<v1::StreamTilesRequest> MakeRequest(
   return request;
 }
 
-int PrintEstimate(const v1::StreamTilesRequest& request, bool json,
-                  Backend* backend, std::stop_token stop) {
+int PrintEstimate(const v1::StreamTilesRequest& request,
+                  const ChosenTerrain& terrain, bool json, Backend* backend,
+                  std::stop_token stop) {
   v1::EstimateTilesRequest ask;
   *ask.mutable_request() = request;
   const absl::StatusOr<v1::EstimateTilesResponse> estimate =
       backend->EstimateTiles(ask, stop);
-  if (!estimate.ok()) return ReportStatus(estimate.status());
+  if (!estimate.ok()) {
+    return ReportStatus(NameRows(estimate.status(), terrain));
+  }
   if (json) {
     std::cout << JsonLine(*estimate) << '\n';
     return kExitOk;
@@ -128,6 +133,12 @@ int PrintEstimate(const v1::StreamTilesRequest& request, bool json,
       estimate->tiles(), estimate->samples(), estimate->data_bytes(),
       estimate->generated_points(), estimate->cpu_seconds(),
       estimate->memory_bytes());
+  if (estimate->prepare_bytes() > 0) {
+    std::cout << fmt::format(
+        "before that, to meet the spot heights: about {:.3g} s, at most {} "
+        "bytes\n",
+        estimate->prepare_seconds(), estimate->prepare_bytes());
+  }
   return kExitOk;
 }
 
@@ -195,14 +206,19 @@ int Run(const TerrainCommand& command, std::stop_token stop) {
   }
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
   const absl::StatusOr<ChosenTerrain> terrain =
-      ChooseTerrain(command.terrain, backend.get(), stop);
+      ChooseTerrain(command.terrain, command.extent.level, backend.get(), stop);
   if (!terrain.ok()) return ReportStatus(terrain.status());
   const absl::StatusOr<v1::StreamTilesRequest> request =
       MakeRequest(command, *terrain);
   if (!request.ok()) return Usage(request.status());
   if (command.dry_run) {
-    return PrintEstimate(*request, command.json, backend.get(), stop);
+    return PrintEstimate(*request, *terrain, command.json, backend.get(), stop);
   }
+
+  const auto start = std::chrono::steady_clock::now();
+  const absl::StatusOr<std::optional<v1::SpotReport>> spots =
+      PrepareSpots(*terrain, command.progress, backend.get(), stop);
+  if (!spots.ok()) return ReportStatus(spots.status());
 
   SinkOptions options;
   options.compression = command.compression;
@@ -213,7 +229,6 @@ int Run(const TerrainCommand& command, std::stop_token stop) {
                       command.tiles.empty() ? TerrainExport::Files::kOne
                                             : TerrainExport::Files::kOneATile,
                       options);
-  const auto start = std::chrono::steady_clock::now();
   const absl::Status status =
       Export(command, *request, backend.get(), stop, &files);
   const double seconds =
@@ -233,6 +248,7 @@ int Run(const TerrainCommand& command, std::stop_token stop) {
   } else {
     PrintSummary(summary);
   }
+  PrintSpotReport(*spots, *terrain);
   return kExitOk;
 }
 

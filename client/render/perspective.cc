@@ -7,15 +7,14 @@
 #include <numbers>
 #include <vector>
 
+#include "client/render/depth_canvas.h"
+
 namespace terrane::client {
 namespace {
 
-constexpr Rgb kPaper{1, 1, 1};
 constexpr Rgb kWall{0.62, 0.57, 0.52};
 constexpr Rgb kWaterWall{0.36, 0.53, 0.70};
 
-// Every pixel is the mean of this many by this many.
-constexpr int kSupersampling = 3;
 // Posts a side that are drawn; more would be smaller than a pixel.
 constexpr std::int64_t kMaxPosts = 1400;
 constexpr double kMarginShare = 0.03;
@@ -26,57 +25,26 @@ constexpr double kReliefShare = 1.0 / 9;
 constexpr double kDry = -1;
 
 // A corner of a triangle: where on the canvas, how far away, what colour.
-struct Corner {
-  double x = 0;
-  double y = 0;
-  double distance = 0;
+struct Corner : DepthPoint {
   Rgb colour;
   // How deep the ground lies under water; drawn as water where above 0.
   double depth = kDry;
 };
 
-// The canvas with a distance for every pixel; the nearer one stays.
-class DepthCanvas {
+// A canvas of land and water.
+class BlockCanvas {
  public:
   // `range` is that of the land, which the water's colours depend on.
-  DepthCanvas(int width, int height, const TintRange& range)
-      : width_(width),
-        height_(height),
-        range_(range),
-        colours_(
-            static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-            kPaper),
-        distances_(colours_.size(), std::numeric_limits<double>::infinity()) {}
+  BlockCanvas(int width, int height, const TintRange& range)
+      : canvas_(width, height), range_(range) {}
 
   void FillTriangle(const Corner& a, const Corner& b, const Corner& c) {
-    const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-    if (area == 0) return;
-    const auto [min_x, max_x] = std::minmax({a.x, b.x, c.x});
-    const auto [min_y, max_y] = std::minmax({a.y, b.y, c.y});
-    for (int y = First(min_y); y <= Last(max_y, height_); ++y) {
-      for (int x = First(min_x); x <= Last(max_x, width_); ++x) {
-        const double px = x + 0.5;
-        const double py = y + 0.5;
-        const double wb =
-            ((px - a.x) * (c.y - a.y) - (c.x - a.x) * (py - a.y)) / area;
-        const double wc =
-            ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / area;
-        const double wa = 1 - wb - wc;
-        if (wa < 0 || wb < 0 || wc < 0) continue;
-        const double distance =
-            wa * a.distance + wb * b.distance + wc * c.distance;
-        const std::size_t at =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-            static_cast<std::size_t>(x);
-        if (distance >= distances_[at]) continue;
-        distances_[at] = distance;
-        // The shore lies where the depth is 0, inside a triangle.
-        const double depth = wa * a.depth + wb * b.depth + wc * c.depth;
-        colours_[at] = depth > 0
-                           ? WaterTint(depth, range_)
-                           : Mixed(a.colour, wa, b.colour, wb, c.colour, wc);
-      }
-    }
+    canvas_.FillTriangle(a, b, c, [&](double wa, double wb, double wc) {
+      // The shore lies where the depth is 0, inside a triangle.
+      const double depth = wa * a.depth + wb * b.depth + wc * c.depth;
+      return depth > 0 ? WaterTint(depth, range_)
+                       : Mixed(a.colour, wa, b.colour, wb, c.colour, wc);
+    });
   }
 
   void FillQuad(const Corner& a, const Corner& b, const Corner& c,
@@ -85,47 +53,11 @@ class DepthCanvas {
     FillTriangle(b, c, d);
   }
 
-  // Means of kSupersampling squares.
-  Picture Shrunk() const {
-    Canvas canvas(width_ / kSupersampling, height_ / kSupersampling, kPaper);
-    constexpr double kShare = 1.0 / (kSupersampling * kSupersampling);
-    for (int y = 0; y < canvas.height(); ++y) {
-      for (int x = 0; x < canvas.width(); ++x) {
-        Rgb sum;
-        for (int k = 0; k < kSupersampling * kSupersampling; ++k) {
-          const int row = y * kSupersampling + k / kSupersampling;
-          const int column = x * kSupersampling + k % kSupersampling;
-          const Rgb& one = colours_[static_cast<std::size_t>(row) *
-                                        static_cast<std::size_t>(width_) +
-                                    static_cast<std::size_t>(column)];
-          sum = {sum.red + one.red, sum.green + one.green, sum.blue + one.blue};
-        }
-        canvas.SetPixel(
-            x, y, {sum.red * kShare, sum.green * kShare, sum.blue * kShare});
-      }
-    }
-    return canvas.picture();
-  }
+  Picture Shrunk() const { return canvas_.Shrunk().picture(); }
 
  private:
-  static int First(double at) {
-    return std::max(static_cast<int>(std::floor(at - 0.5)), 0);
-  }
-  static int Last(double at, int count) {
-    return std::min(static_cast<int>(std::ceil(at)), count - 1);
-  }
-  static Rgb Mixed(const Rgb& a, double wa, const Rgb& b, double wb,
-                   const Rgb& c, double wc) {
-    return {wa * a.red + wb * b.red + wc * c.red,
-            wa * a.green + wb * b.green + wc * c.green,
-            wa * a.blue + wb * b.blue + wc * c.blue};
-  }
-
-  int width_;
-  int height_;
+  DepthCanvas canvas_;
   TintRange range_;
-  std::vector<Rgb> colours_;
-  std::vector<double> distances_;
 };
 
 // The posts that are drawn, with their colours.
@@ -225,8 +157,9 @@ class View {
   Corner Project(std::int64_t i, std::int64_t j, double height,
                  const Rgb& colour) const {
     const Corner raw = Rotated(i, j, height);
-    return {(raw.x - left_) * pixels_ + margin_,
-            (raw.y - top_) * pixels_ + margin_, raw.distance, colour};
+    return {{(raw.x - left_) * pixels_ + margin_,
+             (raw.y - top_) * pixels_ + margin_, raw.distance},
+            colour};
   }
 
  private:
@@ -237,9 +170,8 @@ class View {
     const double up = block_.exaggeration * (height - block_.minimum);
     const double right = east * turn_cos_ + south * turn_sin_;
     const double near = south * turn_cos_ - east * turn_sin_;
-    return {right,
-            near * tilt_sin_ - up * tilt_cos_,
-            -near * tilt_cos_ - up * tilt_sin_,
+    return {{right, near * tilt_sin_ - up * tilt_cos_,
+             -near * tilt_cos_ - up * tilt_sin_},
             {}};
   }
 
@@ -282,7 +214,7 @@ class View {
 };
 
 void DrawTop(const Block& block, const View& view,
-             std::optional<double> water_level, DepthCanvas* canvas) {
+             std::optional<double> water_level, BlockCanvas* canvas) {
   const auto corner = [&](std::int64_t i, std::int64_t j) {
     const std::size_t at = block.At(i, j);
     Corner result = view.Project(i, j, block.surface[at], block.colours[at]);
@@ -311,7 +243,7 @@ void DrawTop(const Block& block, const View& view,
 // darker by its side.
 void DrawWall(const Block& block, const View& view, std::int64_t i0,
               std::int64_t j0, std::int64_t i1, std::int64_t j1, double lit,
-              DepthCanvas* canvas) {
+              BlockCanvas* canvas) {
   const std::size_t at0 = block.At(i0, j0);
   const std::size_t at1 = block.At(i1, j1);
   if (std::isnan(block.ground[at0]) || std::isnan(block.ground[at1])) return;
@@ -329,7 +261,7 @@ void DrawWall(const Block& block, const View& view, std::int64_t i0,
   draw(block.surface, block.ground[at0], block.ground[at1], water, water);
 }
 
-void DrawWalls(const Block& block, const View& view, DepthCanvas* canvas) {
+void DrawWalls(const Block& block, const View& view, BlockCanvas* canvas) {
   const std::int64_t last_row = block.rows - 1;
   const std::int64_t last_column = block.columns - 1;
   for (std::int64_t i = 0; i < last_column; ++i) {
@@ -349,7 +281,7 @@ PerspectivePicture RenderPerspective(const core::HeightView& heights,
                                      const PerspectiveOptions& options) {
   const Block block = MakeBlock(heights, scale, options);
   const View view(block, options);
-  DepthCanvas canvas(options.width * kSupersampling, view.canvas_height(),
+  BlockCanvas canvas(options.width * kSupersampling, view.canvas_height(),
                      block.range);
   DrawTop(block, view, options.water_level, &canvas);
   DrawWalls(block, view, &canvas);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "client/render/relief.h"
 
@@ -75,14 +76,15 @@ void DrawFrame(double x, double y, double width, double height,
   canvas->DrawLine(d, a, 2.5, kDetailFrame);
 }
 
-// The size at which both captions fit above their panels, if one does.
-int CaptionSize(const Panel& left, const Panel& right, int panel_width) {
+// The largest size at which every caption fits above its panel, if one does.
+int CaptionSize(std::span<const Panel> panels, int panel_width) {
+  const auto fits = [&](int size) {
+    return std::ranges::all_of(panels, [&](const Panel& panel) {
+      return Canvas::TextWidth(panel.caption, size) <= panel_width;
+    });
+  };
   int size = kCaptionSize;
-  while (size > kSmallestCaptionSize &&
-         std::max(Canvas::TextWidth(left.caption, size),
-                  Canvas::TextWidth(right.caption, size)) > panel_width) {
-    --size;
-  }
+  while (size > kSmallestCaptionSize && !fits(size)) --size;
   return size;
 }
 
@@ -90,40 +92,51 @@ int Pixels(double metres, double metres_per_pixel) {
   return std::max(static_cast<int>(std::lround(metres / metres_per_pixel)), 1);
 }
 
+// One panel from x on: its whole, framed where the detail is, and the detail.
+void DrawPanel(const Shaded& shaded, int x, int panel_height,
+               double metres_per_pixel, double share,
+               const SideBySideOptions& options, Canvas* canvas) {
+  const int width = Pixels(shaded.width_m, metres_per_pixel);
+  const int height = Pixels(shaded.height_m, metres_per_pixel);
+  canvas->Paste(Part(shaded.picture, 1, width, height), x, kCaptionHeight);
+  DrawFrame(x + width * (1 - share) / 2,
+            kCaptionHeight + height * (1 - share) / 2, width * share,
+            height * share, canvas);
+  const auto detail_height = static_cast<int>(
+      std::lround(options.panel_width * shaded.height_m / shaded.width_m));
+  canvas->Paste(Part(shaded.picture, share, options.panel_width,
+                     std::min(detail_height, panel_height)),
+                x, kCaptionHeight + panel_height + kGap);
+}
+
 }  // namespace
 
-Picture RenderSideBySide(const Panel& left, const Panel& right,
+Picture RenderSideBySide(std::span<const Panel> panels,
                          const SideBySideOptions& options) {
-  const Shaded shaded[] = {Shade(left, options), Shade(right, options)};
-  const Panel* panels[] = {&left, &right};
-  const double metres_per_pixel =
-      std::max(shaded[0].width_m, shaded[1].width_m) / options.panel_width;
-  const int panel_height = Pixels(
-      std::max(shaded[0].height_m, shaded[1].height_m), metres_per_pixel);
-  const int caption_size = CaptionSize(left, right, options.panel_width);
-  Canvas canvas(2 * options.panel_width + 3 * kGap,
+  std::vector<Shaded> shaded;
+  double width_m = 0;
+  double height_m = 0;
+  for (const Panel& panel : panels) {
+    shaded.push_back(Shade(panel, options));
+    width_m = std::max(width_m, shaded.back().width_m);
+    height_m = std::max(height_m, shaded.back().height_m);
+  }
+  const double metres_per_pixel = width_m / options.panel_width;
+  const int panel_height = Pixels(height_m, metres_per_pixel);
+  const int caption_size = CaptionSize(panels, options.panel_width);
+  const int count = static_cast<int>(panels.size());
+  Canvas canvas(count * (options.panel_width + kGap) + kGap,
                 2 * (panel_height + kGap) + kCaptionHeight, kPaper);
-  for (int side = 0; side < 2; ++side) {
-    const Shaded& one = shaded[side];
-    const int x = kGap + side * (options.panel_width + kGap);
-    const int width = Pixels(one.width_m, metres_per_pixel);
-    const int height = Pixels(one.height_m, metres_per_pixel);
-    // The same piece of ground on both sides.
-    const double share =
-        std::min(options.detail_share * shaded[0].width_m / one.width_m, 1.0);
+  int x = kGap;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
     canvas.DrawText({static_cast<double>(x), kCaptionHeight / 2.0},
-                    panels[side]->caption, caption_size, TextAlign::kLeft,
-                    kInk);
-    canvas.Paste(Part(one.picture, 1, width, height), x, kCaptionHeight);
-    DrawFrame(x + width * (1 - share) / 2,
-              kCaptionHeight + height * (1 - share) / 2, width * share,
-              height * share, &canvas);
-    canvas.Paste(
-        Part(one.picture, share, options.panel_width,
-             std::min(static_cast<int>(std::lround(options.panel_width *
-                                                   one.height_m / one.width_m)),
-                      panel_height)),
-        x, kCaptionHeight + panel_height + kGap);
+                    panels[i].caption, caption_size, TextAlign::kLeft, kInk);
+    // The same piece of ground in every panel.
+    const double share = std::min(
+        options.detail_share * shaded[0].width_m / shaded[i].width_m, 1.0);
+    DrawPanel(shaded[i], x, panel_height, metres_per_pixel, share, options,
+              &canvas);
+    x += options.panel_width + kGap;
   }
   return canvas.picture();
 }

@@ -1,8 +1,9 @@
-// Two elevation models next to each other, hillshaded at the same ground scale,
-// each with a caption: the whole of both above, a detail of both below.
+// Elevation models next to each other, hillshaded at the same ground scale,
+// each with a caption: the whole of each above, a detail of each below.
 #ifndef TERRANE_CLIENT_RENDER_SIDE_BY_SIDE_H_
 #define TERRANE_CLIENT_RENDER_SIDE_BY_SIDE_H_
 
+#include <span>
 #include <string>
 
 #include "client/render/canvas.h"
@@ -25,7 +26,8 @@ struct SideBySideOptions {
   double exaggeration = 1;
 };
 
-Picture RenderSideBySide(const Panel& left, const Panel& right,
+// From left to right; at least one.
+Picture RenderSideBySide(std::span<const Panel> panels,
                          const SideBySideOptions& options);
 
 }  // namespace terrane::client

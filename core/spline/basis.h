@@ -2,9 +2,9 @@
 // 1].
 //
 // Shared by control nets of macro shapes and by fractal surfaces. At any t only
-// degree + 1 neighbouring functions are not 0, none is negative and they sum to
-// 1. A Basis is a small value without allocations; safe from any thread.
-// Determinism: IEEE operations only.
+// support() neighbouring functions are not 0, and they sum to 1; none is
+// negative but the cubic Hermite's. A Basis is a small value without
+// allocations; safe from any thread. Determinism: IEEE operations only.
 //
 // Sources: Bernstein polynomials by de Casteljau's triangle, B-splines by the
 // Cox-de Boor recurrence over integer knots (Piegl & Tiller, The NURBS Book,
@@ -15,6 +15,21 @@
 #include <span>
 
 namespace terrane::core {
+
+// The kinds of control nets.
+enum class SplineBasis {
+  kBezier,
+  kBSplineUniform,
+  kBSplineClamped,
+  kBilinear,
+  kBicubicHermite
+};
+
+// Whether a net of that kind has a degree to choose.
+constexpr bool HasDegree(SplineBasis basis) {
+  return basis == SplineBasis::kBSplineUniform ||
+         basis == SplineBasis::kBSplineClamped;
+}
 
 class Basis {
  public:
@@ -30,22 +45,40 @@ class Basis {
   // B-spline whose end knots are repeated: meets the outer control points.
   static Basis ClampedBSpline(int count, int degree);
 
+  // Piecewise cubic Hermite curve through every control point. Its tangents are
+  // taken from the points: half the step between the neighbours, at the two
+  // ends the step to the one neighbour. 2 <= count <= kMaxCount.
+  static Basis CubicHermite(int count);
+  // One axis of a net of kind `basis`; `degree` is read where HasDegree(basis).
+  static Basis Of(SplineBasis basis, int count, int degree);
+
   // Control points.
   int count() const { return count_; }
-  // Non-zero functions at any t: degree + 1.
-  int support() const { return degree_ + 1; }
+  // Functions that may differ from 0 at any one t: degree + 1, or all of a
+  // Hermite curve with fewer points than that.
+  int support() const;
+  // The largest sum over t of the functions' squares, which is 1 where some
+  // control point is met.
+  double LargestSquaredSum() const;
+  // The largest sum over t of the functions' sizes: how far a curve may leave
+  // the range of its control values, 1 when it never does.
+  double LargestAbsoluteSum() const;
 
   // Writes the values of functions first .. first + support() - 1 at t, cut to
   // [0, 1], into `values` (at least support() of them); returns first.
   int Values(double t, std::span<double> values) const;
 
  private:
-  enum class Kind { kBernstein, kUniform, kClamped };
+  enum class Kind { kBernstein, kUniform, kClamped, kHermite };
 
   Basis(Kind kind, int count, int degree)
       : kind_(kind), count_(count), degree_(degree) {}
 
   void BernsteinValues(double t, std::span<double> values) const;
+  // Functions of the cell between control points `cell` and cell + 1, at t in
+  // [0, 1] of it, first of the support being control point `first`.
+  void HermiteValues(double t, int cell, int first,
+                     std::span<double> values) const;
   // Functions of the knot span [span, span + 1), at `position` inside it.
   void BSplineValues(double position, int span, std::span<double> values) const;
   // Knot `index` - degree of the knot vector, in spans.

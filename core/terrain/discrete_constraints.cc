@@ -41,29 +41,39 @@ Filed FirstAppearance(int level, LatticePoint point) {
 
 }  // namespace
 
+absl::StatusOr<int> DiscreteLevel(const DiscreteConstraint& constraint,
+                                  std::size_t index, const Frame& frame,
+                                  int dimensions) {
+  if (constraint.level) return *constraint.level;
+  const double spacing = dimensions == 2 ? std::max(std::fabs(frame.spacing_x),
+                                                    std::fabs(frame.spacing_y))
+                                         : std::fabs(frame.spacing_x);
+  const int level =
+      LevelForRadius(spacing, constraint.radius.value_or(spacing));
+  if (level <= kMaxLevel) return level;
+  return ViolationError(
+      "discrete_constraints[" + std::to_string(index) + "].radius",
+      "must be at least the spacing of level " + std::to_string(kMaxLevel) +
+          ", " + NumberText(std::ldexp(spacing, -kMaxLevel)) + ", got " +
+          NumberText(*constraint.radius));
+}
+
 absl::StatusOr<DiscreteConstraints> DiscreteConstraints::Create(
     const TerrainSpec& spec, const Frame& frame) {
   const bool plane = spec.dimensions == 2;
-  const double spacing =
-      plane ? std::max(std::fabs(frame.spacing_x), std::fabs(frame.spacing_y))
-            : std::fabs(frame.spacing_x);
   std::vector<std::vector<LatticePoint>> by_level;
   Violations violations;
   for (std::size_t k = 0; k < spec.discrete_constraints.size(); ++k) {
     const DiscreteConstraint& constraint = spec.discrete_constraints[k];
-    const std::string path = "discrete_constraints[" + std::to_string(k) + "]";
-    const int level =
-        constraint.level
-            ? *constraint.level
-            : LevelForRadius(spacing, constraint.radius.value_or(spacing));
-    if (level > kMaxLevel) {
-      violations.Add(path + ".radius",
-                     "must be at least the spacing of level " +
-                         std::to_string(kMaxLevel) + ", " +
-                         NumberText(std::ldexp(spacing, -kMaxLevel)) +
-                         ", got " + NumberText(*constraint.radius));
+    const absl::StatusOr<int> chosen =
+        DiscreteLevel(constraint, k, frame, spec.dimensions);
+    if (!chosen.ok()) {
+      for (const Violation& v : ViolationsOf(chosen.status())) {
+        violations.Add(v.field, v.description);
+      }
       continue;
     }
+    const int level = *chosen;
     const double x =
         Nearest(constraint.point.x, frame.origin_x, frame.spacing_x, level);
     const double y = plane ? Nearest(constraint.point.y, frame.origin_y,
@@ -71,7 +81,7 @@ absl::StatusOr<DiscreteConstraints> DiscreteConstraints::Create(
                            : 0;
     const auto limit = static_cast<double>(kMaxIndex);
     if (!(std::fabs(x) <= limit && std::fabs(y) <= limit)) {
-      violations.Add(path,
+      violations.Add("discrete_constraints[" + std::to_string(k) + "]",
                      "must lie within 2^52 lattice steps of index 0 at "
                      "level " +
                          std::to_string(level));

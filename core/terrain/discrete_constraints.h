@@ -5,6 +5,7 @@
 #ifndef TERRANE_CORE_TERRAIN_DISCRETE_CONSTRAINTS_H_
 #define TERRANE_CORE_TERRAIN_DISCRETE_CONSTRAINTS_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,6 +24,13 @@ struct LatticePoint {
 
   bool operator==(const LatticePoint&) const = default;
 };
+
+// The level whose lattice constraint `index` snaps to: its own, or the coarsest
+// one whose spacing is at most its radius. Errors: INVALID_ARGUMENT when a
+// radius asks for a level beyond kMaxLevel.
+absl::StatusOr<int> DiscreteLevel(const DiscreteConstraint& constraint,
+                                  std::size_t index, const Frame& frame,
+                                  int dimensions);
 
 class DiscreteConstraints {
  public:

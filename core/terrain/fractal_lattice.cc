@@ -7,17 +7,12 @@
 
 #include "core/noise/counter_hash.h"
 #include "core/noise/normal.h"
+#include "core/terrain/displacement_draw.h"
 
 namespace terrane::core {
 namespace {
 
 constexpr float kThird = 1.0f / 3;
-
-// Which random stream a half step draws from.
-std::uint32_t StreamOf(int level, HalfStep step) {
-  return static_cast<std::uint32_t>(2 * level) +
-         (step == HalfStep::kEdge ? 1u : 0u);
-}
 
 std::int64_t FloorHalf(std::int64_t x) { return x >> 1; }
 
@@ -49,12 +44,11 @@ float DeviationAt(const Deviation& deviation, int i, int j) {
 
 }  // namespace
 
-FractalLattice::FractalLattice(
-    Config config, DeviationModel model,
-    std::shared_ptr<const DiscreteConstraints> constraints)
+FractalLattice::FractalLattice(Config config, DeviationModel model,
+                               Imposed imposed)
     : config_(std::move(config)),
       model_(std::move(model)),
-      constraints_(std::move(constraints)),
+      imposed_(std::move(imposed)),
       id_(NextId()),
       stencil_(config_.source == FractalSource::kSubdivision
                    ? Stencil::kSubdivision
@@ -220,7 +214,7 @@ FractalLattice::Grid FractalLattice::Level0(const Window& window,
         ColumnWord(config_.mirror.X(grid.x + i, 0));
   }
   const std::uint64_t stream =
-      StreamKey(config_.seed, StreamOf(0, HalfStep::kEdge));
+      StreamKey(config_.seed, PlaneStream(0, HalfStep::kEdge));
   scratch->even_keys.resize(static_cast<std::size_t>(grid.rows));
   for (int j = 0; j < grid.rows; ++j) {
     scratch->even_keys[static_cast<std::size_t>(j)] =
@@ -229,6 +223,8 @@ FractalLattice::Grid FractalLattice::Level0(const Window& window,
   AddDisplacements(grid.view, grid.columns, grid.rows,
                    scratch->even_words.data(), scratch->even_keys.data(),
                    {model_.level0(), {}});
+  Correct(0, HalfStep::kEdge, grid.x, grid.y, 1, grid.columns, grid.rows,
+          grid.view);
   MeetConstraints(0, grid.x, grid.y, 1, grid.columns, grid.rows, grid.view,
                   scratch);
   return grid;
@@ -243,16 +239,23 @@ FractalLattice::Grid FractalLattice::Refine(int level, const Grid& parent,
   const GridView centres =
       RefineCentres(level, parent, reach, parent.columns - 1 - reach,
                     parent.rows - 1 - reach, scratch);
-  if (config_.source == FractalSource::kSuccessive) {
-    // Corners move after the centres were computed from where they stood
-    // (Saupe's MidPointFM2D with addition).
-    const Deviation deviation =
-        DeviationOf(level, HalfStep::kCentre, parent, 0, 0, 0, scratch);
-    AddDisplacements(parent.view, parent.columns, parent.rows,
-                     scratch->even_words.data(), scratch->even_keys.data(),
-                     deviation);
+  if (config_.source != FractalSource::kSuccessive) {
+    return RefineEdges(level, parent, centres, child, scratch);
   }
-  return RefineEdges(level, parent, centres, child, scratch);
+  // Corners move after the centres were computed from where they stood (Saupe's
+  // MidPointFM2D with addition).
+  RememberHeld(level, parent, scratch);
+  const Deviation deviation =
+      DeviationOf(level, HalfStep::kCentre, parent, 0, 0, 0, scratch);
+  AddDisplacements(parent.view, parent.columns, parent.rows,
+                   scratch->even_words.data(), scratch->even_keys.data(),
+                   deviation);
+  Correct(level, HalfStep::kCentre, 2 * parent.x, 2 * parent.y, 2,
+          parent.columns, parent.rows, parent.view);
+  RestoreHeld(parent, 1, *scratch);
+  const Grid refined = RefineEdges(level, parent, centres, child, scratch);
+  RestoreHeld(refined, 2, *scratch);
+  return refined;
 }
 
 GridView FractalLattice::RefineCentres(int level, const Grid& parent, int first,
@@ -274,6 +277,8 @@ GridView FractalLattice::RefineCentres(int level, const Grid& parent, int first,
       DeviationOf(level, HalfStep::kCentre, parent, 1, 1, 0, scratch);
   step.row_scratch = scratch->ring.Shape(parent.view.stride, 4).data;
   ComputeCentres(step);
+  Correct(level, HalfStep::kCentre, 2 * parent.x + 1, 2 * parent.y + 1, 2,
+          parent.columns - 1, parent.rows - 1, step.centres);
   AddBuffers(HalfStep::kCentre, 2 * parent.x + 1, 2 * parent.y + 1, 2,
              parent.columns - 1, parent.rows - 1, step.centres, *scratch);
   return step.centres;
@@ -313,6 +318,8 @@ FractalLattice::Grid FractalLattice::RefineEdges(int level, const Grid& parent,
     MendBorderRows(level, parent, centres, deviations.horizontal, *scratch,
                    &grid);
   }
+  Correct(level, HalfStep::kEdge, grid.x, grid.y, 1, grid.columns, grid.rows,
+          grid.view);
   AddBuffers(HalfStep::kEdge, grid.x, grid.y, 1, grid.columns, grid.rows,
              grid.view, *scratch);
   MeetConstraints(level, grid.x, grid.y, 1, grid.columns, grid.rows, grid.view,
@@ -334,7 +341,8 @@ void FractalLattice::PrepareWords(int level, const Grid& parent,
 
 void FractalLattice::PrepareKeys(int level, HalfStep step, const Grid& parent,
                                  Scratch* scratch) const {
-  const std::uint64_t stream = StreamKey(config_.seed, StreamOf(level, step));
+  const std::uint64_t stream =
+      StreamKey(config_.seed, PlaneStream(level, step));
   const auto size = static_cast<std::size_t>(parent.rows);
   scratch->even_keys.resize(size);
   scratch->odd_keys.resize(size);
@@ -434,62 +442,6 @@ void FractalLattice::MendBorderRows(int level, const Grid& parent,
           sum * kThird +
           NormalFromBits(HashLane(word, key)) * DeviationAt(horizontal, i, j);
     }
-  }
-}
-
-// --- Discrete constraints ---------------------------------------------------
-
-bool FractalLattice::OnBorder(const LatticePoint& point, int level) const {
-  if (!config_.mirror.domain) return false;
-  return point.x == 0 || point.x == config_.mirror.domain->cells_x << level ||
-         point.y == 0 || point.y == config_.mirror.domain->cells_y << level;
-}
-
-// Eq. 11: half way from p* to each of its M parents, the next level's points
-// get B = -P(p*) / M into their initial value. `plane` holds the points (x, y)
-// + spacing (i, j) of `level`.
-void FractalLattice::AddBuffers(HalfStep step, std::int64_t x, std::int64_t y,
-                                std::int64_t spacing, int columns, int rows,
-                                GridView plane, const Scratch& scratch) const {
-  for (const Buffered& buffered : scratch.buffered) {
-    const LatticePoint& p = buffered.point;
-    const bool centre = (p.x & 1) != 0 && (p.y & 1) != 0;
-    if (centre != (step == HalfStep::kCentre)) continue;
-    const bool border = !centre && OnBorder(p, buffered.level);
-    const float share = buffered.value * (border ? -kThird : -0.25f);
-    constexpr int kDiagonal[4][2] = {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
-    constexpr int kAxis[4][2] = {{0, -1}, {-1, 0}, {1, 0}, {0, 1}};
-    for (int k = 0; k < 4; ++k) {
-      const int* offset = centre ? kDiagonal[k] : kAxis[k];
-      const std::int64_t i = 2 * p.x + offset[0] - x;
-      const std::int64_t j = 2 * p.y + offset[1] - y;
-      if (i < 0 || j < 0 || i >= spacing * columns || j >= spacing * rows) {
-        continue;
-      }
-      plane.At(i / spacing, j / spacing) += share;
-    }
-  }
-}
-
-// Sets P(p*) = 0 and remembers what it was. Points of level 0 have no parents,
-// so they have no buffer.
-void FractalLattice::MeetConstraints(int level, std::int64_t x, std::int64_t y,
-                                     std::int64_t spacing, int columns,
-                                     int rows, GridView plane,
-                                     Scratch* scratch) const {
-  if (constraints_->empty()) return;
-  scratch->buffered.clear();  // those of the level before are in place by now
-  scratch->found.clear();
-  constraints_->Find(
-      level, {x, y, spacing * (columns - 1) + 1, spacing * (rows - 1) + 1},
-      &scratch->found);
-  for (const LatticePoint& point : scratch->found) {
-    const std::int64_t dx = point.x - x;
-    const std::int64_t dy = point.y - y;
-    if (dx % spacing != 0 || dy % spacing != 0) continue;
-    float& value = plane.At(dx / spacing, dy / spacing);
-    if (level > 0) scratch->buffered.push_back({point, level, value});
-    value = 0;
   }
 }
 

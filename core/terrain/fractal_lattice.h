@@ -22,7 +22,7 @@
 
 #include "core/grid/grid_view.h"
 #include "core/terrain/deviation_model.h"
-#include "core/terrain/discrete_constraints.h"
+#include "core/terrain/imposed.h"
 #include "core/terrain/lattice_kernels.h"
 #include "core/terrain/mirror.h"
 
@@ -44,6 +44,12 @@ class FractalLattice {
     LatticePoint point;
     int level = 0;
     float value = 0;  // P(p*) before it became 0
+  };
+
+  // A spot that stays, in indices of the level before, and its value.
+  struct Held {
+    LatticePoint point;
+    float value = 0;
   };
 
   // A computed rectangle of one level: view(0, 0) is point (x, y).
@@ -72,11 +78,12 @@ class FractalLattice {
     std::vector<RowKey> even_keys, odd_keys;
     std::vector<LatticePoint> found;
     std::vector<Buffered> buffered;
+    std::vector<SpotPins::Found> pins;
+    std::vector<Held> held;
     Checkpoint checkpoint;
   };
 
-  FractalLattice(Config config, DeviationModel model,
-                 std::shared_ptr<const DiscreteConstraints> constraints);
+  FractalLattice(Config config, DeviationModel model, Imposed imposed);
 
   // POINT samples of `level`: the plane's (0, 0) is the window's first sample.
   // The plane lives in the scratch until its next use. A null plane: stopped.
@@ -133,6 +140,12 @@ class FractalLattice {
   void MendBorderRows(int level, const Grid& parent, GridView centres,
                       const Deviation& horizontal, const Scratch& scratch,
                       Grid* child) const;
+  void Correct(int level, HalfStep step, std::int64_t x, std::int64_t y,
+               std::int64_t spacing, int columns, int rows,
+               GridView plane) const;
+  void RememberHeld(int level, const Grid& parent, Scratch* scratch) const;
+  static void RestoreHeld(const Grid& grid, std::int64_t spacing,
+                          const Scratch& scratch);
   void AddBuffers(HalfStep step, std::int64_t x, std::int64_t y,
                   std::int64_t spacing, int columns, int rows, GridView plane,
                   const Scratch& scratch) const;
@@ -143,7 +156,7 @@ class FractalLattice {
 
   Config config_;
   DeviationModel model_;
-  std::shared_ptr<const DiscreteConstraints> constraints_;
+  Imposed imposed_;
   std::uint64_t id_;
   Stencil stencil_;
   int margin_;

@@ -2,8 +2,7 @@
 
 #include <utility>
 
-#include "core/noise/counter_hash.h"
-#include "core/noise/normal.h"
+#include "core/terrain/displacement_draw.h"
 
 namespace terrane::core {
 namespace {
@@ -11,20 +10,16 @@ namespace {
 // Corners on each side that four-point subdivision takes beyond a cell.
 constexpr std::int64_t kMargin = 1;
 
-// Streams of the line, apart from those of the plane.
-constexpr std::uint32_t kFirstStream = 1u << 16;
-
 float FourPoint(float a, float b, float c, float d) {
   return (b + c) * (9.0f / 16) - (a + d) * (1.0f / 16);
 }
 
 }  // namespace
 
-FractalLine::FractalLine(Config config, DeviationModel model,
-                         std::shared_ptr<const DiscreteConstraints> constraints)
+FractalLine::FractalLine(Config config, DeviationModel model, Imposed imposed)
     : config_(std::move(config)),
       model_(std::move(model)),
-      constraints_(std::move(constraints)) {}
+      imposed_(std::move(imposed)) {}
 
 FractalLine::Line FractalLine::ParentOf(const Line& child) const {
   const std::int64_t first = child.first >> 1;
@@ -46,11 +41,8 @@ std::int64_t FractalLine::PointsComputed(int level, std::int64_t count) const {
 }
 
 float FractalLine::Normal(int level, std::int64_t index) const {
-  const RowKey key = MakeRowKey(
-      StreamKey(config_.seed, kFirstStream + static_cast<std::uint32_t>(level)),
-      0);
-  return NormalFromBits(
-      HashLane(ColumnWord(config_.mirror.X(index, level)), key));
+  return DisplacementDraw(config_.seed, LineStream(level),
+                          config_.mirror.X(index, level), 0);
 }
 
 std::span<const float> FractalLine::Points(int level, std::int64_t first,
@@ -62,6 +54,7 @@ std::span<const float> FractalLine::Points(int level, std::int64_t first,
   scratch->model.stop = stop;
   Line line = lines.back();
   FillLevel0(line, &scratch->lines[0]);
+  Correct(0, HalfStep::kEdge, line, &scratch->lines[0]);
   MeetConstraints(0, line, &scratch->lines[0], scratch);
   for (int n = 1; n <= level; ++n) {
     if (stop.stop_requested()) return {};
@@ -75,6 +68,7 @@ std::span<const float> FractalLine::Points(int level, std::int64_t first,
                  values.begin() + (needed.first - first_refined));
     values.resize(static_cast<std::size_t>(needed.count));
     line = needed;
+    Correct(n, HalfStep::kEdge, line, &values);
     AddBuffers(line, &values, scratch);
     MeetConstraints(n, line, &values, scratch);
   }
@@ -117,12 +111,35 @@ void FractalLine::Refine(int level, const Line& parent,
   }
   if (!displace_all) return;
   const Deviation even = deviation(0);
+  const std::vector<bool> held = HeldPoints(level - 1, parent, scratch);
   for (std::size_t k = 0; k < cells; ++k) {
     const std::size_t i = k + kMargin;
+    if (held[i]) continue;
     const std::int64_t index =
         2 * (parent.first + static_cast<std::int64_t>(i));
     (*to)[2 * k] += Normal(level, index) * at(even, i);
   }
+}
+
+void FractalLine::Correct(int level, HalfStep step, const Line& line,
+                          std::vector<float>* values) const {
+  if (imposed_.corrections == nullptr) return;
+  const auto count = static_cast<int>(line.count);
+  imposed_.corrections->AddTo(HalfStepSlot(level, step), line.first, 0, 1,
+                              count, 1, {values->data(), count});
+}
+
+// Source SUCCESSIVE displaces every point at every level, but for the spots:
+// they stay where they are.
+std::vector<bool> FractalLine::HeldPoints(int level, const Line& line,
+                                          Scratch* scratch) const {
+  std::vector<bool> held(static_cast<std::size_t>(line.count));
+  if (imposed_.pins == nullptr) return held;
+  imposed_.pins->Find(level, line.first, 0, 1, line.count, 1, &scratch->pins);
+  for (const SpotPins::Found& pin : scratch->pins) {
+    held[static_cast<std::size_t>(pin.i)] = true;
+  }
+  return held;
 }
 
 // Eq. 11 with M = 2: the points half way to both parents get -P(p*) / 2.
@@ -144,7 +161,9 @@ void FractalLine::MeetConstraints(int level, const Line& line,
   scratch->buffered.clear();
   scratch->buffered_values.clear();
   scratch->found.clear();
-  constraints_->Find(level, {line.first, 0, line.count, 1}, &scratch->found);
+  if (imposed_.constraints == nullptr) return;
+  imposed_.constraints->Find(level, {line.first, 0, line.count, 1},
+                             &scratch->found);
   for (const LatticePoint& point : scratch->found) {
     float& value = (*values)[static_cast<std::size_t>(point.x - line.first)];
     if (level > 0) {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/terrain/deviation_model.h"
-#include "core/terrain/discrete_constraints.h"
+#include "core/terrain/imposed.h"
 #include "core/terrain/mirror.h"
 
 namespace terrane::core {
@@ -35,10 +35,10 @@ class FractalLine {
     std::vector<LatticePoint> found;
     std::vector<LatticePoint> buffered;
     std::vector<float> buffered_values;
+    std::vector<SpotPins::Found> pins;
   };
 
-  FractalLine(Config config, DeviationModel model,
-              std::shared_ptr<const DiscreteConstraints> constraints);
+  FractalLine(Config config, DeviationModel model, Imposed imposed);
 
   // POINT samples [first, first + count) of `level`; empty when stopped. Lives
   // in the scratch until its next use.
@@ -60,6 +60,10 @@ class FractalLine {
   void FillLevel0(const Line& line, std::vector<float>* values) const;
   void Refine(int level, const Line& parent, const std::vector<float>& from,
               std::vector<float>* to, Scratch* scratch) const;
+  void Correct(int level, HalfStep step, const Line& line,
+               std::vector<float>* values) const;
+  std::vector<bool> HeldPoints(int level, const Line& line,
+                               Scratch* scratch) const;
   void AddBuffers(const Line& line, std::vector<float>* values,
                   Scratch* scratch) const;
   void MeetConstraints(int level, const Line& line, std::vector<float>* values,
@@ -68,7 +72,7 @@ class FractalLine {
 
   Config config_;
   DeviationModel model_;
-  std::shared_ptr<const DiscreteConstraints> constraints_;
+  Imposed imposed_;
 };
 
 }  // namespace terrane::core

@@ -29,9 +29,9 @@ class ControlNetPart : public MacroShapePart {
  public:
   explicit ControlNetPart(const ControlNet& net)
       : net_(net),
-        along_x_(MakeBasis(net.basis, net.columns, net.degree)),
+        along_x_(Basis::Of(net.basis, net.columns, net.degree)),
         along_y_(net.rows == 1 ? Basis::Bernstein(1)
-                               : MakeBasis(net.basis, net.rows, net.degree)) {}
+                               : Basis::Of(net.basis, net.rows, net.degree)) {}
 
   void Evaluate(const SampleGrid& grid, const SampleRect& rect,
                 double* out) const override {
@@ -59,22 +59,11 @@ class ControlNetPart : public MacroShapePart {
   }
 
   MacroShape::Bounds BoundsIn(const Box&) const override {
-    return HullOf(net_.heights, 1.0);
+    return HullOf(net_.heights, along_x_.LargestAbsoluteSum() *
+                                    along_y_.LargestAbsoluteSum());
   }
 
  private:
-  static Basis MakeBasis(SplineBasis basis, int count, int degree) {
-    switch (basis) {
-      case SplineBasis::kBezier:
-        return Basis::Bernstein(count);
-      case SplineBasis::kBSplineUniform:
-        return Basis::UniformBSpline(count, degree);
-      case SplineBasis::kBSplineClamped:
-        break;
-    }
-    return Basis::ClampedBSpline(count, degree);
-  }
-
   static double Parameter(double at, double minimum, double maximum) {
     return (at - minimum) / (maximum - minimum);
   }

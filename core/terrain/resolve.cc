@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "core/terrain/calibration.h"
+#include "core/terrain/spot_heights.h"
 
 namespace terrane::core {
 namespace {
@@ -44,6 +45,13 @@ absl::StatusOr<ResolvedSpec> Resolve(TerrainSpec spec) {
   if (!out.sigma) out.sigma = kDefaultSigma;
   if (!out.delta) out.delta = kDefaultDelta;
   if (!out.frame) out.frame = Frame{};
+  if (!out.spots.empty() && !out.spots.level) {
+    out.spots.level = DefaultSpotLevel(out.spots, *out.frame, out.dimensions);
+  }
+  if (!out.discrete_constraints.empty()) {
+    out.discrete_method = ConditionsDiscrete(out) ? DiscreteMethod::kCondition
+                                                  : DiscreteMethod::kBuffer;
+  }
   return resolved;
 }
 

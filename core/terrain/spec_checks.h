@@ -55,6 +55,12 @@ void ValidateFrame(const Path& path, const Frame& frame, SpecChecks* checks);
 // validate_macro.cc: `macro` and its parts.
 void ValidateMacro(const Path& path, const MacroSpec& macro,
                    SpecChecks* checks);
+// validate_spots.cc: `spots`.
+void ValidateSpots(const Path& root, const TerrainSpec& spec,
+                   SpecChecks* checks);
+// validate_constraints.cc: a point inside the domain, if there is one.
+void ValidatePlace(const Path& path, const Point2& point,
+                   const TerrainSpec& spec, SpecChecks* checks);
 // validate_constraints.cc: `discrete_constraints`, `continuous_constraints`.
 void ValidateDiscreteConstraints(const Path& root, const TerrainSpec& spec,
                                  SpecChecks* checks);

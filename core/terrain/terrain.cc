@@ -5,14 +5,16 @@
 #include <string>
 #include <utility>
 
-#include "core/base/det_math.h"
 #include "core/base/violations.h"
+#include "core/terrain/conditioning.h"
 #include "core/terrain/fractal_lattice.h"
 #include "core/terrain/fractal_line.h"
 #include "core/terrain/macro_shape.h"
 #include "core/terrain/mapping_kernels.h"
 #include "core/terrain/resolve.h"
 #include "core/terrain/scattered.h"
+#include "core/terrain/spot_heights.h"
+#include "core/terrain/terrain_bounds.h"
 #include "core/terrain/validate.h"
 
 namespace terrane::core {
@@ -23,9 +25,6 @@ namespace {
 constexpr std::int64_t kBlockSize = 288;
 
 constexpr double kSqrt6 = 2.449489742783178;
-
-// Deviations beyond this many standard deviations are rarer than one in 10^8.
-constexpr double kLikelyDeviations = 6;
 
 absl::Status Stopped() { return absl::CancelledError("generation stopped"); }
 
@@ -44,6 +43,7 @@ struct TileScratch::Buffers {
   SampleGrid grid;
   GridBuffer fractal, macro, fidelity;
   ScatteredScratch scattered;
+  std::vector<SpotPins::Found> pins;
 };
 
 TileScratch::TileScratch() : buffers_(std::make_unique<Buffers>()) {}
@@ -53,7 +53,8 @@ TileScratch& TileScratch::operator=(TileScratch&&) noexcept = default;
 
 class Terrain::Impl {
  public:
-  static absl::StatusOr<std::unique_ptr<const Impl>> Create(TerrainSpec spec);
+  static absl::StatusOr<std::unique_ptr<const Impl>> Create(
+      TerrainSpec spec, const Preparation& preparation);
 
   const TerrainSpec& spec() const { return resolved_.spec; }
   std::optional<Window> Extent(int level, Sampling sampling) const;
@@ -64,12 +65,20 @@ class Terrain::Impl {
                         const std::stop_token& stop,
                         TileScratch::Buffers* buffers, float* out) const;
   std::int64_t GeneratedPoints(const TileRequest& request) const;
-  double DeviationBoundOr(double unbounded) const;
-  HeightRange LikelyRange() const;
+  std::optional<double> DeviationBound() const {
+    return LargestDeviationOf(spec(), fidelity_);
+  }
+  HeightRange LikelyRange() const {
+    return LikelyHeights(resolved_, macro_, fidelity_, largest_spot_deviation_);
+  }
+  std::optional<SpotReport> spots() const { return spots_; }
+  std::int64_t MemoryBytes() const;
 
  private:
-  Impl(ResolvedSpec resolved,
-       std::shared_ptr<const DiscreteConstraints> constraints);
+  explicit Impl(ResolvedSpec resolved);
+  absl::Status Impose(const Preparation& preparation);
+  absl::StatusOr<Imposed> Condition(const DeviationModel& model,
+                                    const Preparation& preparation);
 
   static std::shared_ptr<const RasterSampler> AmplitudeSampler(
       const ResolvedSpec& resolved);
@@ -84,11 +93,17 @@ class Terrain::Impl {
   void MapBlock(What what, const Window& window, GridView fractal,
                 const std::stop_token& stop, TileScratch::Buffers* buffers,
                 float* out, std::ptrdiff_t out_stride) const;
+  void PinSpots(int level, Sampling sampling, const Window& window,
+                TileScratch::Buffers* buffers, float* out,
+                std::ptrdiff_t out_stride) const;
 
   ResolvedSpec resolved_;
   MacroShape macro_;
   ConstraintField fidelity_;
   HeightMap map_;
+  Imposed imposed_;
+  std::optional<SpotReport> spots_;
+  double largest_spot_deviation_ = 0;  // of the spots from the macro shape
   // One of the two, by dimensions.
   std::optional<FractalLattice> lattice_;
   std::optional<FractalLine> line_;
@@ -118,22 +133,11 @@ DeviationModel::Config Terrain::Impl::ModelConfig(
           AmplitudeSampler(resolved)};
 }
 
-Terrain::Impl::Impl(ResolvedSpec resolved,
-                    std::shared_ptr<const DiscreteConstraints> constraints)
+Terrain::Impl::Impl(ResolvedSpec resolved)
     : resolved_(std::move(resolved)),
       macro_(spec().macro, spec().dimensions, *spec().frame),
       fidelity_(spec().continuous_constraints, ConstraintQuantity::kFidelity,
                 *spec().fidelity, spec().dimensions) {
-  DeviationModel model(ModelConfig(resolved_));
-  const Mirror mirror = {spec().domain};
-  if (spec().dimensions == 2) {
-    lattice_.emplace(FractalLattice::Config{spec().seed, spec().source, mirror,
-                                            spec().refinement.has_value()},
-                     std::move(model), std::move(constraints));
-  } else {
-    line_.emplace(FractalLine::Config{spec().seed, spec().source, mirror},
-                  std::move(model), std::move(constraints));
-  }
   map_.mapping = spec().mapping;
   map_.inverse_soft_limit =
       spec().soft_limit ? static_cast<float>(1 / *spec().soft_limit) : 0.0f;
@@ -142,19 +146,76 @@ Terrain::Impl::Impl(ResolvedSpec resolved,
   map_.deviation = std::sqrt(fidelity_.background());
 }
 
+// Conditions the process on the spots and keeps them.
+absl::StatusOr<Imposed> Terrain::Impl::Condition(
+    const DeviationModel& model, const Preparation& preparation) {
+  absl::StatusOr<SnappedSpots> snapped =
+      SnapSpots(spec(), macro_, fidelity_, map_);
+  if (!snapped.ok()) return snapped.status();
+  const ConditionedProcess process = {spec().seed,
+                                      spec().source,
+                                      spec().dimensions,
+                                      {spec().domain},
+                                      spec().refinement.has_value(),
+                                      *spec().roughness,
+                                      &model};
+  absl::StatusOr<CorrectionTable> table =
+      ConditionProcess(process, snapped->spots, preparation);
+  if (!table.ok()) return table.status();
+  spots_ = snapped->report;
+  largest_spot_deviation_ = snapped->largest_deviation;
+  Imposed imposed;
+  imposed.corrections =
+      std::make_shared<const CorrectionTable>(*std::move(table));
+  imposed.pins = std::make_shared<const SpotPins>(snapped->spots);
+  return imposed;
+}
+
+// Makes the process pass through what the spec asks for.
+absl::Status Terrain::Impl::Impose(const Preparation& preparation) {
+  DeviationModel model(ModelConfig(resolved_));
+  if (!spec().spots.empty() || ConditionsDiscrete(spec())) {
+    absl::StatusOr<Imposed> conditioned = Condition(model, preparation);
+    if (!conditioned.ok()) return conditioned.status();
+    imposed_ = *std::move(conditioned);
+  } else if (!spec().discrete_constraints.empty()) {
+    absl::StatusOr<DiscreteConstraints> constraints =
+        DiscreteConstraints::Create(spec(), *spec().frame);
+    if (!constraints.ok()) return constraints.status();
+    imposed_.constraints =
+        std::make_shared<const DiscreteConstraints>(*std::move(constraints));
+  }
+  const Mirror mirror = {spec().domain};
+  if (spec().dimensions == 2) {
+    lattice_.emplace(FractalLattice::Config{spec().seed, spec().source, mirror,
+                                            spec().refinement.has_value()},
+                     std::move(model), imposed_);
+  } else {
+    line_.emplace(FractalLine::Config{spec().seed, spec().source, mirror},
+                  std::move(model), imposed_);
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<std::unique_ptr<const Terrain::Impl>> Terrain::Impl::Create(
-    TerrainSpec spec) {
+    TerrainSpec spec, const Preparation& preparation) {
   Violations violations;
   ValidateSpec(spec, SpecLimits(), "", &violations);
   if (!violations.empty()) return violations.ToStatus();
   absl::StatusOr<ResolvedSpec> resolved = Resolve(std::move(spec));
   if (!resolved.ok()) return resolved.status();
-  absl::StatusOr<DiscreteConstraints> constraints =
-      DiscreteConstraints::Create(resolved->spec, *resolved->spec.frame);
-  if (!constraints.ok()) return constraints.status();
-  return std::unique_ptr<const Impl>(new Impl(
-      *std::move(resolved),
-      std::make_shared<const DiscreteConstraints>(*std::move(constraints))));
+  std::unique_ptr<Impl> impl(new Impl(*std::move(resolved)));
+  const absl::Status status = impl->Impose(preparation);
+  if (!status.ok()) return status;
+  return impl;
+}
+
+std::int64_t Terrain::Impl::MemoryBytes() const {
+  std::int64_t bytes =
+      static_cast<std::int64_t>(resolved_.amplitude.size() * sizeof(float));
+  if (imposed_.corrections) bytes += imposed_.corrections->MemoryBytes();
+  if (imposed_.pins) bytes += imposed_.pins->MemoryBytes();
+  return bytes;
 }
 
 // --- Requests ---------------------------------------------------------------
@@ -268,6 +329,9 @@ bool Terrain::Impl::GenerateBlock(What what, int level, Sampling sampling,
   const GridView fractal = Fractal(level, sampling, window, stop, buffers);
   if (fractal.data == nullptr) return false;
   MapBlock(what, window, fractal, stop, buffers, out, out_stride);
+  if (what == What::kHeight) {
+    PinSpots(level, sampling, window, buffers, out, out_stride);
+  }
   return !stop.stop_requested();
 }
 
@@ -324,61 +388,25 @@ void Terrain::Impl::MapBlock(What what, const Window& window, GridView fractal,
   }
 }
 
-// --- Bounds -----------------------------------------------------------------
-
-double Terrain::Impl::DeviationBoundOr(double unbounded) const {
-  if (spec().mapping == HeightMapping::kBoltzmann) {
-    const double delta = *spec().delta;
-    return std::sqrt(-2 * static_cast<double>(fidelity_.maximum()) *
-                     DetLog(delta / (kSqrt6 + delta)));
+// A spot's height to the last bit, whatever float arithmetic left of it.
+void Terrain::Impl::PinSpots(int level, Sampling sampling, const Window& window,
+                             TileScratch::Buffers* buffers, float* out,
+                             std::ptrdiff_t out_stride) const {
+  if (imposed_.pins == nullptr) return;
+  if (sampling == Sampling::kPoint) {
+    imposed_.pins->Find(level, window.x, window.y, 1, window.width,
+                        window.height, &buffers->pins);
+  } else if (spec().source != FractalSource::kSuccessive) {
+    // Centres are points of the next level; SUCCESSIVE moves them there.
+    const std::int64_t y = spec().dimensions == 1 ? 0 : 2 * window.y + 1;
+    imposed_.pins->Find(level + 1, 2 * window.x + 1, y, 2, window.width,
+                        window.height, &buffers->pins);
+  } else {
+    return;
   }
-  return spec().soft_limit ? *spec().soft_limit : unbounded;
-}
-
-HeightRange Terrain::Impl::LikelyRange() const {
-  // The variance of P is at most the sum of the displacements' along a chain of
-  // ancestors: the stencils average.
-  double variance =
-      Level0Deviation(spec().source) * Level0Deviation(spec().source);
-  const ConstraintField roughness(spec().continuous_constraints,
-                                  ConstraintQuantity::kRoughness,
-                                  *spec().roughness, spec().dimensions);
-  const auto h = static_cast<double>(roughness.minimum());
-  for (int level = 1; level <= kMaxLevel; ++level) {
-    for (const HalfStep step : {HalfStep::kCentre, HalfStep::kEdge}) {
-      const double d = DisplacementDeviation(spec().source, spec().dimensions,
-                                             h, level, step);
-      variance += d * d;
-    }
+  for (const SpotPins::Found& pin : buffers->pins) {
+    out[pin.j * out_stride + pin.i] = pin.height;
   }
-  const double amplitude =
-      resolved_.amplitude.empty()
-          ? 1.0
-          : static_cast<double>(*std::max_element(resolved_.amplitude.begin(),
-                                                  resolved_.amplitude.end()));
-  const double likely =
-      kLikelyDeviations * amplitude *
-      std::sqrt(static_cast<double>(fidelity_.maximum()) * variance);
-  const double deviation = std::min(likely, DeviationBoundOr(likely));
-
-  constexpr double kEverywhereInPlane = 1e300;
-  MacroShape::Bounds bounds =
-      macro_.BoundsIn(-kEverywhereInPlane, -kEverywhereInPlane,
-                      kEverywhereInPlane, kEverywhereInPlane);
-  if (spec().domain) {
-    const Frame& frame = *spec().frame;
-    const double x1 =
-        frame.origin_x +
-        static_cast<double>(spec().domain->cells_x) * frame.spacing_x;
-    const double y1 =
-        frame.origin_y +
-        static_cast<double>(spec().domain->cells_y) * frame.spacing_y;
-    bounds = macro_.BoundsIn(
-        std::min(frame.origin_x, x1), std::min(frame.origin_y, y1),
-        std::max(frame.origin_x, x1), std::max(frame.origin_y, y1));
-  }
-  return {static_cast<float>(bounds.minimum - deviation),
-          static_cast<float>(bounds.maximum + deviation)};
 }
 
 // --- The public face --------------------------------------------------------
@@ -387,9 +415,9 @@ Terrain::Terrain(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 Terrain::~Terrain() = default;
 
 absl::StatusOr<std::shared_ptr<const Terrain>> Terrain::Create(
-    TerrainSpec spec) {
+    TerrainSpec spec, const Preparation& preparation) {
   absl::StatusOr<std::unique_ptr<const Impl>> impl =
-      Impl::Create(std::move(spec));
+      Impl::Create(std::move(spec), preparation);
   if (!impl.ok()) return impl.status();
   return std::shared_ptr<const Terrain>(new Terrain(*std::move(impl)));
 }
@@ -438,9 +466,24 @@ std::int64_t Terrain::GeneratedPoints(const TileRequest& request) const {
 }
 
 std::optional<double> Terrain::DeviationBound() const {
-  const double bound = impl_->DeviationBoundOr(-1);
-  if (bound < 0) return std::nullopt;
-  return bound;
+  return impl_->DeviationBound();
+}
+
+std::optional<SpotReport> Terrain::spots() const { return impl_->spots(); }
+
+std::int64_t Terrain::MemoryBytes() const { return impl_->MemoryBytes(); }
+
+PreparationCost Terrain::EstimatePreparation(const TerrainSpec& spec) {
+  const Frame frame = FrameOf(spec);
+  const int level = spec.spots.level.value_or(
+      DefaultSpotLevel(spec.spots, frame, spec.dimensions));
+  std::size_t spots = spec.spots.points.size();
+  if (spec.spots.table != nullptr) spots += spec.spots.table->size();
+  spots += CountLineSamples(spec.spots, frame, level, spec.dimensions,
+                            static_cast<std::size_t>(SpecLimits().max_spots));
+  if (ConditionsDiscrete(spec)) spots += spec.discrete_constraints.size();
+  return ConditioningCost(spec.source, spec.dimensions,
+                          static_cast<std::int64_t>(spots), level);
 }
 
 HeightRange Terrain::LikelyRange() const { return impl_->LikelyRange(); }

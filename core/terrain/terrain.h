@@ -22,15 +22,11 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "core/grid/lattice_window.h"
+#include "core/terrain/height_range.h"
+#include "core/terrain/preparation.h"
 #include "core/terrain/terrain_spec.h"
 
 namespace terrane::core {
-
-// A closed range of heights.
-struct HeightRange {
-  float minimum = 0;
-  float maximum = 0;
-};
 
 // Working memory of one generating thread. Grows to what the largest tile needs
 // and stays there.
@@ -58,11 +54,15 @@ struct TileRequest {
 class Terrain {
  public:
   // Validates the spec, fills in what is not set and prepares: calibrates a
-  // refinement, snaps and indexes constraints, prefilters rasters. Errors:
-  // INVALID_ARGUMENT with violations (field paths relative to the recipe, such
-  // as "roughness").
+  // refinement, snaps and indexes constraints, prefilters rasters, conditions
+  // the process on the spot heights. Errors: INVALID_ARGUMENT with violations
+  // (field paths relative to the recipe, such as "roughness" or
+  // "spots.points[3]"), CANCELLED.
   static absl::StatusOr<std::shared_ptr<const Terrain>> Create(
-      TerrainSpec spec);
+      TerrainSpec spec, const Preparation& preparation = {});
+
+  // Of a valid spec, without preparing it.
+  static PreparationCost EstimatePreparation(const TerrainSpec& spec);
 
   ~Terrain();
   Terrain(const Terrain&) = delete;
@@ -104,6 +104,12 @@ class Terrain {
   absl::Status GenerateAt(int level, std::span<const Point2> points,
                           std::stop_token stop, TileScratch* scratch,
                           std::span<float> out) const;
+
+  // What became of the spot heights; nothing without any.
+  std::optional<SpotReport> spots() const;
+
+  // Memory that the terrain holds beyond its spec.
+  std::int64_t MemoryBytes() const;
 
   // Lattice points that generating the window takes, ancestors included.
   std::int64_t GeneratedPoints(const TileRequest& request) const;

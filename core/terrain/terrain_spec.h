@@ -19,6 +19,7 @@
 
 #include "core/grid/lattice_window.h"
 #include "core/grid/raster.h"
+#include "core/spline/basis.h"
 
 namespace terrane::core {
 
@@ -38,7 +39,6 @@ struct Point2 {
 
 // --- The macro shape d(p) ----------------------------------------------------
 
-enum class SplineBasis { kBezier, kBSplineUniform, kBSplineClamped };
 enum class Interpolation { kBilinear, kCatmullRom, kBSpline };
 
 struct Plane {
@@ -119,6 +119,10 @@ struct DiscreteConstraint {
   std::optional<double> radius;
 };
 
+// How P_fbm is brought to 0 at the discrete constraints: by the paper's region
+// buffering, or as spot heights with z = d are met.
+enum class DiscreteMethod { kBuffer, kCondition };
+
 enum class ConstraintQuantity { kRoughness, kFidelity };
 enum class DistanceNorm { kL1, kL2 };
 enum class ReachEdge { kStep, kSmooth };
@@ -133,6 +137,35 @@ struct ContinuousConstraint {
   ReachEdge edge = ReachEdge::kStep;
   SourceKind kind = SourceKind::kPoint;
   std::vector<Point2> vertices;
+};
+
+// --- Spot heights ------------------------------------------------------------
+
+struct SpotHeight {
+  Point2 point;
+  double height = 0;
+  double standard_error = 0;  // 0: met exactly
+
+  bool operator==(const SpotHeight&) const = default;
+};
+
+struct SpotLine {
+  std::vector<Point2> vertices;
+  std::vector<double> heights;  // one a vertex; empty: the macro shape's
+  double spacing = 0;           // 0: that of the spots' level
+  double standard_error = 0;
+  bool only_falls = false;
+};
+
+struct SpotHeights {
+  std::vector<SpotHeight> points;
+  std::shared_ptr<const std::vector<SpotHeight>> table;  // null: none
+  std::vector<SpotLine> lines;
+  std::optional<int> level;
+
+  bool empty() const {
+    return points.empty() && table == nullptr && lines.empty();
+  }
 };
 
 // --- The whole --------------------------------------------------------------
@@ -163,7 +196,9 @@ struct TerrainSpec {
   MacroSpec macro;
   std::optional<Refinement> refinement;
   std::vector<DiscreteConstraint> discrete_constraints;
+  std::optional<DiscreteMethod> discrete_method;
   std::vector<ContinuousConstraint> continuous_constraints;
+  SpotHeights spots;
 };
 
 }  // namespace terrane::core

@@ -124,6 +124,18 @@ void ValidateRefinement(const Path& root, const TerrainSpec& spec,
   if (raster != nullptr) ValidateRefinedLattice(root, spec, *raster, checks);
 }
 
+void ValidateDiscreteMethod(const Path& root, const TerrainSpec& spec,
+                            SpecChecks* checks) {
+  if (spec.discrete_method != DiscreteMethod::kBuffer) return;
+  const Path path = root.Field("discrete_method");
+  if (spec.source != FractalSource::kMidpoint) {
+    checks->Violate(path, std::string("must be CONDITION with source ") +
+                              SourceName(spec.source) + ", got BUFFER");
+  } else if (!spec.spots.empty()) {
+    checks->Violate(path, "must be CONDITION with spot heights, got BUFFER");
+  }
+}
+
 }  // namespace
 
 void ValidateFrame(const Path& path, const Frame& frame, SpecChecks* checks) {
@@ -151,14 +163,10 @@ void ValidateSpec(const TerrainSpec& spec, const SpecLimits& limits,
   }
   ValidateMacro(root.Field("macro"), spec.macro, &checks);
   if (spec.refinement.has_value()) ValidateRefinement(root, spec, &checks);
-  if (!spec.discrete_constraints.empty() &&
-      spec.source != FractalSource::kMidpoint) {
-    checks.Violate(
-        root.Field("discrete_constraints"),
-        std::string("need source MIDPOINT, got ") + SourceName(spec.source));
-  }
+  ValidateDiscreteMethod(root, spec, &checks);
   ValidateDiscreteConstraints(root, spec, &checks);
   ValidateContinuousConstraints(root, spec, &checks);
+  ValidateSpots(root, spec, &checks);
 }
 
 }  // namespace terrane::core

@@ -17,6 +17,8 @@ struct SpecLimits {
   int max_continuous_constraints = 10'000;
   int max_vertices = 100'000;
   int max_macro_parts = 1'000;
+  int max_spots = 100'000;
+  int max_inline_spots = 10'000;
 };
 
 // Adds a violation for each field outside its range, by its path in the recipe

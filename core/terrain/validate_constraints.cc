@@ -18,19 +18,6 @@ Range DomainRange(double origin, double spacing, std::int64_t cells) {
   return {std::min(origin, end), std::max(origin, end)};
 }
 
-void ValidatePlace(const Path& path, const Point2& point,
-                   const TerrainSpec& spec, SpecChecks* checks) {
-  if (!checks->Coordinates(path, point) || !spec.domain.has_value()) return;
-  const Frame frame = spec.frame.value_or(Frame{});
-  checks->Number(
-      path.Field("x"), point.x,
-      DomainRange(frame.origin_x, frame.spacing_x, spec.domain->cells_x));
-  if (checks->dimensions() == 1) return;
-  checks->Number(
-      path.Field("y"), point.y,
-      DomainRange(frame.origin_y, frame.spacing_y, spec.domain->cells_y));
-}
-
 // What a source is made of, in the words of the recipe's oneof.
 void ValidateSource(const Path& path, const ContinuousConstraint& constraint,
                     SpecChecks* checks) {
@@ -67,6 +54,19 @@ void ValidateSource(const Path& path, const ContinuousConstraint& constraint,
 }
 
 }  // namespace
+
+void ValidatePlace(const Path& path, const Point2& point,
+                   const TerrainSpec& spec, SpecChecks* checks) {
+  if (!checks->Coordinates(path, point) || !spec.domain.has_value()) return;
+  const Frame frame = spec.frame.value_or(Frame{});
+  checks->Number(
+      path.Field("x"), point.x,
+      DomainRange(frame.origin_x, frame.spacing_x, spec.domain->cells_x));
+  if (checks->dimensions() == 1) return;
+  checks->Number(
+      path.Field("y"), point.y,
+      DomainRange(frame.origin_y, frame.spacing_y, spec.domain->cells_y));
+}
 
 void ValidateDiscreteConstraints(const Path& root, const TerrainSpec& spec,
                                  SpecChecks* checks) {

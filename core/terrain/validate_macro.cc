@@ -9,8 +9,6 @@ namespace terrane::core {
 namespace {
 
 constexpr Range kSlopes{-1e6, 1e6};
-constexpr int kMaxNetSide = 64;
-constexpr int kMaxDegree = 5;
 
 // Checks one shape; `path` is the part's.
 class ShapeValidator {
@@ -68,10 +66,11 @@ class ShapeValidator {
   void operator()(const ControlNet& net) const {
     const Path path = path_.Field("control_net");
     const bool plane = checks_->dimensions() == 2;
-    const bool columns_good =
-        checks_->Integer(path.Field("columns"), net.columns, 2, kMaxNetSide);
-    const bool rows_good = checks_->Integer(
-        path.Field("rows"), net.rows, plane ? 2 : 1, plane ? kMaxNetSide : 1);
+    const bool columns_good = checks_->Integer(
+        path.Field("columns"), net.columns, 2, Basis::kMaxCount);
+    const bool rows_good =
+        checks_->Integer(path.Field("rows"), net.rows, plane ? 2 : 1,
+                         plane ? Basis::kMaxCount : 1);
     if (columns_good && rows_good) {
       CheckDegree(path, net);
       CheckNetHeights(path, net);
@@ -142,8 +141,9 @@ class ShapeValidator {
 
  private:
   void CheckDegree(const Path& path, const ControlNet& net) const {
-    if (net.basis == SplineBasis::kBezier) return;
-    if (!checks_->Integer(path.Field("degree"), net.degree, 1, kMaxDegree)) {
+    if (!HasDegree(net.basis)) return;
+    if (!checks_->Integer(path.Field("degree"), net.degree, 1,
+                          Basis::kMaxBSplineDegree)) {
       return;
     }
     const int fewest = checks_->dimensions() == 2

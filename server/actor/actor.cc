@@ -6,12 +6,17 @@
 
 #include "core/base/simd_target.h"
 #include "core/base/violations.h"
+#include "core/surface/surface.h"
+#include "core/surface/validate_surface.h"
 #include "core/terrain/spec_checks.h"
+#include "core/terrain/spot_heights.h"
 #include "server/actor/cost_meter.h"
 #include "server/actor/error_reason.h"
 #include "server/actor/presets.h"
 #include "server/actor/raster_store.h"
 #include "server/actor/raster_upload.h"
+#include "server/actor/spot_table_store.h"
+#include "server/actor/spot_table_upload.h"
 #include "server/actor/terrain_cache.h"
 #include "server/actor/tile_job.h"
 #include "server/convert/request_plan.h"
@@ -20,8 +25,8 @@
 namespace terrane::server {
 namespace {
 
-// Terrains kept ready, and the rasters that they may hold beyond the store.
-constexpr std::size_t kMaxTerrains = 64;
+// Spot tables kept: so many of the largest.
+constexpr std::int64_t kSpotTables = 16;
 
 // A request's terrain as read: a valid spec only when no violation was added.
 struct ReadChoice {
@@ -35,17 +40,28 @@ absl::Status RasterNotFound(const std::string& raster_id) {
                        {std::string(kRasterNotFound), "raster_id", raster_id});
 }
 
+absl::Status SpotTableNotFound(const std::string& table_id) {
+  return NotFoundError(
+      "the spot table is not (or no longer) kept; upload it again",
+      {std::string(kSpotTableNotFound), "table_id", table_id});
+}
+
 class TerrainActor : public Actor {
  public:
   TerrainActor(const Limits& limits, int workers)
       : limits_(limits),
         workers_(workers),
         rasters_(limits.raster_store_bytes),
-        terrains_(kMaxTerrains, limits.raster_store_bytes),
-        meter_(std::make_shared<CostMeter>()) {}
+        spot_tables_(kSpotTables * SpotTableBytes(limits.recipe.max_spots)),
+        terrains_(limits.prepared_bytes),
+        meter_(std::make_shared<CostMeter>()),
+        surfaces_(limits) {}
 
   absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
-      const v1::StreamTilesRequest& request) override;
+      const v1::StreamTilesRequest& request, std::stop_token stop) override;
+  absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(
+      const v1::PrepareTerrainRequest& request, const OnProgress& on_progress,
+      std::stop_token stop) override;
   absl::StatusOr<v1::GetProfileResponse> GetProfile(
       const v1::GetProfileRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::GetHeightsResponse> GetHeights(
@@ -55,15 +71,32 @@ class TerrainActor : public Actor {
   absl::StatusOr<v1::GetPresetResponse> GetPreset(
       const v1::GetPresetRequest& request) override;
   v1::GetServerInfoResponse GetServerInfo() override;
-  std::unique_ptr<RasterUpload> BeginUpload() override {
+  absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
+      const v1::StreamSurfaceRequest& request) override {
+    return surfaces_.Open(request);
+  }
+  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest& request) override {
+    return surfaces_.Estimate(request);
+  }
+  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest& request) override {
+    return surfaces_.GetPreset(request);
+  }
+  std::unique_ptr<RasterUpload> BeginRasterUpload() override {
     return MakeRasterUpload(limits_, &rasters_);
   }
   absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest& request) override;
+  std::unique_ptr<SpotTableUpload> BeginSpotTableUpload() override {
+    return MakeSpotTableUpload(limits_, &spot_tables_);
+  }
+  absl::StatusOr<v1::GetSpotTableResponse> GetSpotTable(
+      const v1::GetSpotTableRequest& request) override;
 
  private:
   struct PlannedTiles {
-    std::shared_ptr<const PreparedTerrain> prepared;
+    ReadChoice choice;
     TilePlan plan;
   };
 
@@ -75,15 +108,17 @@ class TerrainActor : public Actor {
                                   core::Violations* violations);
   // The terrain of a valid choice, from the cache or made now.
   absl::StatusOr<std::shared_ptr<const PreparedTerrain>> Prepare(
-      const ReadChoice& choice);
+      const ReadChoice& choice, const core::Preparation& preparation);
   absl::StatusOr<PlannedTiles> Plan(const v1::StreamTilesRequest& request,
                                     const std::string& prefix);
 
   const Limits limits_;
   const int workers_;
   RasterStore rasters_;
+  SpotTableStore spot_tables_;
   TerrainCache terrains_;
   const std::shared_ptr<CostMeter> meter_;
+  const SurfaceMaker surfaces_;
 };
 
 // The spec to plan with, or null when it has violations.
@@ -114,17 +149,25 @@ absl::StatusOr<ReadChoice> TerrainActor::Read(const v1::TerrainChoice& choice,
       return result;
   }
   if (choice.has_seed()) result.recipe.set_seed(choice.seed());
-  result.read = ReadTerrainRecipe(result.recipe, &rasters_, limits_.recipe,
-                                  result.recipe_prefix, violations);
-  if (!result.read.missing_raster.empty() && violations->empty()) {
-    return RasterNotFound(result.read.missing_raster);
-  }
-  return result;
+  result.read =
+      ReadTerrainRecipe(result.recipe, {&rasters_, &spot_tables_},
+                        limits_.recipe, result.recipe_prefix, violations);
+  if (!violations->empty() || result.read.complete()) return result;
+  return !result.read.missing_raster.empty()
+             ? RasterNotFound(result.read.missing_raster)
+             : SpotTableNotFound(result.read.missing_spot_table);
 }
 
 absl::StatusOr<std::shared_ptr<const PreparedTerrain>> TerrainActor::Prepare(
-    const ReadChoice& choice) {
-  auto prepared = terrains_.Prepare(choice.recipe, choice.read);
+    const ReadChoice& choice, const core::Preparation& preparation) {
+  const std::int64_t bytes =
+      core::Terrain::EstimatePreparation(choice.read.spec).memory_bytes;
+  if (bytes > limits_.prepared_bytes) {
+    return absl::ResourceExhaustedError(
+        "making the terrain ready takes up to " + std::to_string(bytes) +
+        " bytes; the server gives " + std::to_string(limits_.prepared_bytes));
+  }
+  auto prepared = terrains_.Prepare(choice.recipe, choice.read, preparation);
   const std::vector<core::Violation> found =
       core::ViolationsOf(prepared.status());
   if (found.empty()) return prepared;
@@ -139,23 +182,59 @@ absl::StatusOr<std::shared_ptr<const PreparedTerrain>> TerrainActor::Prepare(
 absl::StatusOr<TerrainActor::PlannedTiles> TerrainActor::Plan(
     const v1::StreamTilesRequest& request, const std::string& prefix) {
   core::Violations violations;
-  const auto choice = Read(request.terrain(), prefix, &violations);
+  auto choice = Read(request.terrain(), prefix, &violations);
   if (!choice.ok()) return choice.status();
   PlannedTiles planned;
   planned.plan = PlanTiles(request, ValidSpec(*choice, violations), limits_,
                            prefix, &violations);
   if (!violations.empty()) return violations.ToStatus();
-  auto prepared = Prepare(*choice);
-  if (!prepared.ok()) return prepared.status();
-  planned.prepared = *std::move(prepared);
+  planned.choice = *std::move(choice);
   return planned;
 }
 
 absl::StatusOr<std::shared_ptr<const TileJob>> TerrainActor::OpenTiles(
-    const v1::StreamTilesRequest& request) {
-  auto planned = Plan(request, "");
+    const v1::StreamTilesRequest& request, std::stop_token stop) {
+  const auto planned = Plan(request, "");
   if (!planned.ok()) return planned.status();
-  return MakeTileJob(std::move(planned->prepared), planned->plan, meter_);
+  auto prepared = Prepare(planned->choice, {std::move(stop), {}});
+  if (!prepared.ok()) return prepared.status();
+  return MakeTileJob(*std::move(prepared), planned->plan, meter_);
+}
+
+absl::StatusOr<v1::PreparedTerrain> TerrainActor::PrepareTerrain(
+    const v1::PrepareTerrainRequest& request, const OnProgress& on_progress,
+    std::stop_token stop) {
+  core::Violations violations;
+  const auto choice = Read(request.terrain(), "", &violations);
+  if (!choice.ok()) return choice.status();
+  if (!violations.empty()) return violations.ToStatus();
+  const auto prepared = Prepare(*choice, {std::move(stop), on_progress});
+  if (!prepared.ok()) return prepared.status();
+  v1::PreparedTerrain answer;
+  *answer.mutable_recipe() = (*prepared)->recipe;
+  answer.set_recipe_hash((*prepared)->recipe_hash);
+  answer.set_revision(core::kTerrainRevision);
+  answer.set_memory_bytes((*prepared)->memory_bytes);
+  if (const auto spots = (*prepared)->terrain->spots()) {
+    *answer.mutable_spots() = WriteSpotReport(*spots);
+  }
+  return answer;
+}
+
+// The terrain without what takes a preparation of minutes. Conditioning moves
+// lattice points but adds none, so an estimate counts the same.
+ReadChoice WithoutConditioning(ReadChoice choice) {
+  core::TerrainSpec& spec = choice.read.spec;
+  if (core::ConditionsDiscrete(spec)) {
+    spec.discrete_constraints.clear();
+    spec.discrete_method.reset();
+    choice.recipe.clear_discrete_constraints();
+    choice.recipe.clear_discrete_method();
+  }
+  spec.spots = {};
+  choice.read.spot_table_id.clear();
+  choice.recipe.clear_spots();
+  return choice;
 }
 
 absl::StatusOr<v1::EstimateTilesResponse> TerrainActor::EstimateTiles(
@@ -163,14 +242,17 @@ absl::StatusOr<v1::EstimateTilesResponse> TerrainActor::EstimateTiles(
   const auto planned = Plan(request.request(), "request.");
   if (!planned.ok()) return planned.status();
   const TilePlan& plan = planned->plan;
+  const core::PreparationCost preparation =
+      core::Terrain::EstimatePreparation(planned->choice.read.spec);
+  const auto prepared = Prepare(WithoutConditioning(planned->choice), {});
+  if (!prepared.ok()) return prepared.status();
   v1::EstimateTilesResponse estimate;
   std::int64_t samples = 0;
   std::int64_t points = 0;
   std::int64_t largest = 0;
   for (const TileKind& kind : RemainingTiles(plan)) {
-    const std::int64_t tile_points =
-        planned->prepared->terrain->GeneratedPoints(
-            {plan.level, plan.sampling, kind.example});
+    const std::int64_t tile_points = (*prepared)->terrain->GeneratedPoints(
+        {plan.level, plan.sampling, kind.example});
     samples += kind.count * kind.example.width * kind.example.height;
     points += kind.count * tile_points;
     largest = std::max(largest, tile_points);
@@ -185,6 +267,8 @@ absl::StatusOr<v1::EstimateTilesResponse> TerrainActor::EstimateTiles(
   estimate.set_memory_bytes(2 * std::int64_t{plan.tile_size} * plan.tile_size *
                                 plan.bytes_per_sample() +
                             largest * std::int64_t{sizeof(float)});
+  estimate.set_prepare_seconds(preparation.cpu_seconds);
+  estimate.set_prepare_bytes(preparation.memory_bytes);
   return estimate;
 }
 
@@ -196,7 +280,7 @@ absl::StatusOr<v1::GetProfileResponse> TerrainActor::GetProfile(
   const core::TileRequest plan = PlanProfile(
       request, ValidSpec(*choice, violations), limits_, "", &violations);
   if (!violations.empty()) return violations.ToStatus();
-  const auto prepared = Prepare(*choice);
+  const auto prepared = Prepare(*choice, {stop, {}});
   if (!prepared.ok()) return prepared.status();
   const core::Terrain& terrain = *(*prepared)->terrain;
 
@@ -234,7 +318,7 @@ absl::StatusOr<v1::GetHeightsResponse> TerrainActor::GetHeights(
   const std::vector<core::Point2> points = PlanHeights(
       request, ValidSpec(*choice, violations), limits_, "", &violations);
   if (!violations.empty()) return violations.ToStatus();
-  const auto prepared = Prepare(*choice);
+  const auto prepared = Prepare(*choice, {stop, {}});
   if (!prepared.ok()) return prepared.status();
 
   v1::GetHeightsResponse response;
@@ -266,6 +350,13 @@ absl::StatusOr<v1::GetRasterResponse> TerrainActor::GetRaster(
   return std::move(stored->description);
 }
 
+absl::StatusOr<v1::GetSpotTableResponse> TerrainActor::GetSpotTable(
+    const v1::GetSpotTableRequest& request) {
+  auto stored = spot_tables_.Get(request.table_id());
+  if (!stored.has_value()) return SpotTableNotFound(request.table_id());
+  return std::move(stored->description);
+}
+
 v1::ServerLimits WriteLimits(const Limits& limits) {
   v1::ServerLimits message;
   message.set_max_request_bytes(limits.max_request_bytes);
@@ -282,7 +373,23 @@ v1::ServerLimits WriteLimits(const Limits& limits) {
   message.set_max_raster_samples(limits.max_raster_samples);
   message.set_raster_store_bytes(limits.raster_store_bytes);
   message.set_max_concurrent_streams(limits.max_concurrent_streams);
+  message.set_max_spots(limits.recipe.max_spots);
+  message.set_max_inline_spots(limits.recipe.max_inline_spots);
+  message.set_prepared_bytes(limits.prepared_bytes);
+  message.set_max_surface_side(core::kMaxGridSide);
+  message.set_max_weight_rules(core::kMaxWeightRules);
   return message;
+}
+
+template <typename Preset>
+void AddSummaries(const std::map<std::string, Preset>& presets,
+                  const char* generator, v1::GetServerInfoResponse* info) {
+  for (const auto& [name, preset] : presets) {
+    v1::PresetSummary* summary = info->add_presets();
+    summary->set_name(name);
+    summary->set_title(preset.title());
+    summary->set_generator(generator);
+  }
 }
 
 v1::GetServerInfoResponse TerrainActor::GetServerInfo() {
@@ -292,12 +399,10 @@ v1::GetServerInfoResponse TerrainActor::GetServerInfo() {
   info.set_simd_target(core::SimdTargetName());
   info.set_workers(workers_);
   *info.mutable_limits() = WriteLimits(limits_);
-  for (const auto& [name, preset] : Presets()) {
-    v1::PresetSummary* summary = info.add_presets();
-    summary->set_name(name);
-    summary->set_title(preset.title());
-    summary->set_generator("terrain");
-  }
+  info.set_surface_revision(core::kSurfaceRevision);
+  AddSummaries(Presets(), "terrain", &info);
+  // After all others, by name as well.
+  AddSummaries(SurfacePresets(), "surface", &info);
   return info;
 }
 

@@ -12,6 +12,7 @@
 #define TERRANE_SERVER_ACTOR_ACTOR_H_
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <stop_token>
 
@@ -19,8 +20,11 @@
 #include "absl/status/statusor.h"
 #include "core/terrain/terrain.h"
 #include "server/actor/limits.h"
+#include "server/actor/surface_job.h"
 #include "terrane/v1/info.pb.h"
 #include "terrane/v1/raster.pb.h"
+#include "terrane/v1/spot_table.pb.h"
+#include "terrane/v1/surface.pb.h"
 #include "terrane/v1/terrain.pb.h"
 
 namespace terrane::server {
@@ -41,22 +45,35 @@ class TileJob {
                                 v1::HeightTile* tile) const = 0;
 };
 
-// A raster on its way in. Belongs to one thread at a time.
-class RasterUpload {
+// Content on its way in. Belongs to one thread at a time.
+template <typename Request, typename Response>
+class Upload {
  public:
-  virtual ~RasterUpload() = default;
+  virtual ~Upload() = default;
   // Takes the next message of the upload; the first one holds the header.
-  virtual absl::Status Add(const v1::UploadRasterRequest& part) = 0;
+  virtual absl::Status Add(const Request& part) = 0;
   // Checks that all came, hashes and stores.
-  virtual absl::StatusOr<v1::UploadRasterResponse> Finish() = 0;
+  virtual absl::StatusOr<Response> Finish() = 0;
 };
+using RasterUpload = Upload<v1::UploadRasterRequest, v1::UploadRasterResponse>;
+using SpotTableUpload =
+    Upload<v1::UploadSpotTableRequest, v1::UploadSpotTableResponse>;
+
+// Takes the share of the work that is done, 0 to 1, never falling; called from
+// the thread of the call. May be empty.
+using OnProgress = std::function<void(double)>;
 
 class Actor {
  public:
   virtual ~Actor() = default;
 
+  // Every call that takes a stop token answers CANCELLED once it was asked to;
+  // a preparation that other calls wait for goes on without it.
   virtual absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
-      const v1::StreamTilesRequest& request) = 0;
+      const v1::StreamTilesRequest& request, std::stop_token stop) = 0;
+  virtual absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(
+      const v1::PrepareTerrainRequest& request, const OnProgress& on_progress,
+      std::stop_token stop) = 0;
   virtual absl::StatusOr<v1::GetProfileResponse> GetProfile(
       const v1::GetProfileRequest& request, std::stop_token stop) = 0;
   virtual absl::StatusOr<v1::GetHeightsResponse> GetHeights(
@@ -67,9 +84,19 @@ class Actor {
       const v1::GetPresetRequest& request) = 0;
   virtual v1::GetServerInfoResponse GetServerInfo() = 0;
 
-  virtual std::unique_ptr<RasterUpload> BeginUpload() = 0;
+  virtual absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
+      const v1::StreamSurfaceRequest& request) = 0;
+  virtual absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest& request) = 0;
+  virtual absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest& request) = 0;
+
+  virtual std::unique_ptr<RasterUpload> BeginRasterUpload() = 0;
   virtual absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest& request) = 0;
+  virtual std::unique_ptr<SpotTableUpload> BeginSpotTableUpload() = 0;
+  virtual absl::StatusOr<v1::GetSpotTableResponse> GetSpotTable(
+      const v1::GetSpotTableRequest& request) = 0;
 };
 
 // `workers` is only reported (GetServerInfo).

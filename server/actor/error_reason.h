@@ -12,12 +12,13 @@
 namespace terrane::server {
 
 struct ErrorReason {
-  std::string reason;  // "RASTER_NOT_FOUND", "PRESET_NOT_FOUND"
-  std::string key;     // "raster_id", "preset"
+  std::string reason;  // such as "RASTER_NOT_FOUND"
+  std::string key;     // of what was not found, such as "raster_id"
   std::string value;
 };
 
 inline constexpr std::string_view kRasterNotFound = "RASTER_NOT_FOUND";
+inline constexpr std::string_view kSpotTableNotFound = "SPOT_TABLE_NOT_FOUND";
 inline constexpr std::string_view kPresetNotFound = "PRESET_NOT_FOUND";
 
 // NOT_FOUND with a reason.

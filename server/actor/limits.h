@@ -21,6 +21,7 @@ struct Limits {
   std::int64_t max_raster_samples = std::int64_t{1} << 26;
   std::int64_t raster_store_bytes = std::int64_t{1} << 30;
   int max_concurrent_streams = 64;
+  std::int64_t prepared_bytes = std::int64_t{2} << 30;
 };
 
 }  // namespace terrane::server

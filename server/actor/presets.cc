@@ -3,16 +3,23 @@
 #include <google/protobuf/stubs/logging.h>
 #include <google/protobuf/util/json_util.h>
 
+#include <string_view>
+
 #include "server/actor/embedded_presets.h"
 #include "server/actor/error_reason.h"
 
 namespace terrane::server {
 namespace {
 
-std::map<std::string, v1::TerrainPreset> ParsePresets() {
-  std::map<std::string, v1::TerrainPreset> presets;
+constexpr std::string_view kSurfaceFolder = "surface/";
+
+template <typename Preset>
+std::map<std::string, Preset> ParsePresets(bool surfaces) {
+  std::map<std::string, Preset> presets;
   for (const EmbeddedPreset& embedded : EmbeddedPresets()) {
-    v1::TerrainPreset preset;
+    const std::string_view name = embedded.name;
+    if (name.starts_with(kSurfaceFolder) != surfaces) continue;
+    Preset preset;
     const auto parsed =
         google::protobuf::util::JsonStringToMessage(embedded.json, &preset);
     GOOGLE_CHECK(parsed.ok()) << embedded.name << ": " << parsed.ToString();
@@ -23,19 +30,38 @@ std::map<std::string, v1::TerrainPreset> ParsePresets() {
   return presets;
 }
 
+template <typename Preset>
+absl::StatusOr<const Preset*> Find(const std::map<std::string, Preset>& presets,
+                                   const std::string& name) {
+  const auto found = presets.find(name);
+  if (found != presets.end()) return &found->second;
+  return NotFoundError("no preset is called \"" + name + "\"",
+                       {std::string(kPresetNotFound), "preset", name});
+}
+
 }  // namespace
 
 const std::map<std::string, v1::TerrainPreset>& Presets() {
   static const auto* const presets =
-      new std::map<std::string, v1::TerrainPreset>(ParsePresets());
+      new std::map<std::string, v1::TerrainPreset>(
+          ParsePresets<v1::TerrainPreset>(false));
+  return *presets;
+}
+
+const std::map<std::string, v1::SurfacePreset>& SurfacePresets() {
+  static const auto* const presets =
+      new std::map<std::string, v1::SurfacePreset>(
+          ParsePresets<v1::SurfacePreset>(true));
   return *presets;
 }
 
 absl::StatusOr<const v1::TerrainPreset*> FindPreset(const std::string& name) {
-  const auto found = Presets().find(name);
-  if (found != Presets().end()) return &found->second;
-  return NotFoundError("no preset is called \"" + name + "\"",
-                       {std::string(kPresetNotFound), "preset", name});
+  return Find(Presets(), name);
+}
+
+absl::StatusOr<const v1::SurfacePreset*> FindSurfacePreset(
+    const std::string& name) {
+  return Find(SurfacePresets(), name);
 }
 
 }  // namespace terrane::server

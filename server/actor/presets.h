@@ -1,5 +1,6 @@
-// The presets that ship with the server: protobuf-JSON TerrainPresets of
-// server/presets, embedded when it is built.
+// The presets that ship with the server: protobuf-JSON presets of
+// server/presets, embedded when it is built. Those below surface/ are
+// SurfacePresets, all others TerrainPresets.
 //
 // Threads: immutable; any. Errors: NOT_FOUND with the reason
 // "PRESET_NOT_FOUND". An embedded preset that does not parse is a fault of the
@@ -11,14 +12,18 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "terrane/v1/surface_recipe.pb.h"
 #include "terrane/v1/terrain_recipe.pb.h"
 
 namespace terrane::server {
 
 // By name, and so sorted.
 const std::map<std::string, v1::TerrainPreset>& Presets();
+const std::map<std::string, v1::SurfacePreset>& SurfacePresets();
 
 absl::StatusOr<const v1::TerrainPreset*> FindPreset(const std::string& name);
+absl::StatusOr<const v1::SurfacePreset*> FindSurfacePreset(
+    const std::string& name);
 
 }  // namespace terrane::server
 

@@ -1,14 +1,15 @@
 #include "server/actor/raster_upload.h"
 
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/base/violations.h"
 #include "core/grid/height_codec.h"
 #include "core/terrain/spec_checks.h"
+#include "server/actor/upload_values.h"
 #include "server/convert/content_hash.h"
 #include "server/convert/terrain_convert.h"
 
@@ -41,15 +42,9 @@ class RasterUploadImpl : public RasterUpload {
 
  private:
   absl::Status Begin(const v1::UploadRasterRequest& first);
-  absl::Status AddChunk(const std::string& chunk);
   // Turns the header's nodata value into NaN; finite samples only otherwise.
   absl::Status CleanSamples();
   StoredRaster Describe(const std::string& raster_id);
-
-  std::size_t wanted_bytes() const {
-    return static_cast<std::size_t>(header_.width() * header_.height()) *
-           sizeof(float);
-  }
 
   const Limits& limits_;
   RasterStore* const store_;
@@ -57,9 +52,9 @@ class RasterUploadImpl : public RasterUpload {
   v1::RasterHeader header_;
   std::string expected_id_;
   ContentHash hash_;
-  RasterStore::Reservation reservation_;
+  Reservation reservation_;
+  std::optional<UploadValues<float>> values_;
   std::shared_ptr<core::Raster> raster_;
-  std::size_t received_bytes_ = 0;
 };
 
 absl::Status RasterUploadImpl::Add(const v1::UploadRasterRequest& part) {
@@ -67,7 +62,8 @@ absl::Status RasterUploadImpl::Add(const v1::UploadRasterRequest& part) {
   if (part.part_case() != v1::UploadRasterRequest::kChunk) {
     return ViolationError("chunk", "must be set after the first message");
   }
-  return AddChunk(part.chunk());
+  hash_.Add(part.chunk());
+  return values_->Add(part.chunk());
 }
 
 absl::Status RasterUploadImpl::Begin(const v1::UploadRasterRequest& first) {
@@ -98,39 +94,20 @@ absl::Status RasterUploadImpl::Begin(const v1::UploadRasterRequest& first) {
   core::ValidateFrame(frame_path, frame, &checks);
   if (!violations.empty()) return violations.ToStatus();
 
-  absl::StatusOr<RasterStore::Reservation> reservation =
-      store_->Reserve(static_cast<std::int64_t>(wanted_bytes()));
+  const auto samples =
+      static_cast<std::size_t>(header_.width() * header_.height());
+  absl::StatusOr<Reservation> reservation = store_->Reserve(
+      "the raster", static_cast<std::int64_t>(samples * sizeof(float)));
   if (!reservation.ok()) return reservation.status();
   reservation_ = *std::move(reservation);
   WriteFrame(frame, header_.frame().crs(), header_.mutable_frame());
   HashHeader(header_, frame, &hash_);
+  values_.emplace("raster", samples);
   raster_ = std::make_shared<core::Raster>();
   raster_->width = header_.width();
   raster_->height = header_.height();
   raster_->frame = frame;
   begun_ = true;
-  return absl::OkStatus();
-}
-
-absl::Status RasterUploadImpl::AddChunk(const std::string& chunk) {
-  if (chunk.size() > wanted_bytes() - received_bytes_) {
-    return ViolationError(
-        "chunk", "must end with the raster's " +
-                     std::to_string(wanted_bytes()) + " bytes, got at least " +
-                     std::to_string(received_bytes_ + chunk.size()));
-  }
-  hash_.Add(chunk);
-  // Memory follows the bytes that came, not those that a header promised.
-  const std::size_t end = received_bytes_ + chunk.size();
-  const std::size_t samples = (end + sizeof(float) - 1) / sizeof(float);
-  if (samples > raster_->values.capacity()) {
-    raster_->values.reserve(
-        std::min(2 * samples, wanted_bytes() / sizeof(float)));
-  }
-  raster_->values.resize(samples);
-  std::memcpy(reinterpret_cast<char*>(raster_->values.data()) + received_bytes_,
-              chunk.data(), chunk.size());
-  received_bytes_ = end;
   return absl::OkStatus();
 }
 
@@ -167,21 +144,19 @@ StoredRaster RasterUploadImpl::Describe(const std::string& raster_id) {
 
 absl::StatusOr<v1::UploadRasterResponse> RasterUploadImpl::Finish() {
   if (!begun_) return ViolationError("header", "must be sent, got nothing");
-  if (received_bytes_ != wanted_bytes()) {
-    return ViolationError(
-        "chunk", "must hold " + std::to_string(wanted_bytes()) +
-                     " bytes in all, got " + std::to_string(received_bytes_));
-  }
+  if (const absl::Status all = values_->CheckEnd(); !all.ok()) return all;
   const std::string raster_id = hash_.Finish();
   if (!expected_id_.empty() && expected_id_ != raster_id) {
     return ViolationError(
         "expected_raster_id",
         "must be that of the content, " + raster_id + ", got " + expected_id_);
   }
+  raster_->values = values_->Take();
   if (const absl::Status clean = CleanSamples(); !clean.ok()) return clean;
   v1::UploadRasterResponse response;
   response.set_raster_id(raster_id);
-  response.set_already_present(store_->Insert(Describe(raster_id)));
+  response.set_already_present(
+      store_->Insert(raster_id, Describe(raster_id), RasterBytes(*raster_)));
   return response;
 }
 

@@ -1,26 +1,16 @@
 #include "server/actor/tile_job.h"
 
-// The same XXH3, in the vector instructions that this CPU has.
-#include <xxh_x86dispatch.h>
-
 #include <chrono>
 #include <span>
 #include <string>
 #include <utility>
 
-#include "core/grid/height_codec.h"
+#include "server/actor/height_tile.h"
 #include "server/convert/enum_table.h"
 #include "server/convert/terrain_convert.h"
 
 namespace terrane::server {
 namespace {
-
-void WriteWindow(const core::Window& window, v1::Window* message) {
-  message->set_x(window.x);
-  message->set_y(window.y);
-  message->set_width(window.width);
-  message->set_height(window.height);
-}
 
 // The range that 16-bit tiles are encoded over; a terrain of one height gets a
 // range around it, since a range has an extent.
@@ -55,7 +45,6 @@ class TileJobImpl : public TileJob {
   absl::Status Generate(const core::TileRequest& request, std::stop_token stop,
                         core::TileScratch* scratch,
                         std::span<float> heights) const;
-  void Encode(std::span<const float> heights, v1::HeightTile* tile) const;
 
   const std::shared_ptr<const PreparedTerrain> prepared_;
   const TilePlan plan_;
@@ -86,6 +75,9 @@ void TileJobImpl::WriteHeader() {
   if (const auto bound = terrain.DeviationBound()) {
     header_.set_deviation_bound(*bound);
   }
+  if (const auto spots = terrain.spots()) {
+    *header_.mutable_spots() = WriteSpotReport(*spots);
+  }
 }
 
 absl::Status TileJobImpl::Generate(const core::TileRequest& request,
@@ -102,15 +94,6 @@ absl::Status TileJobImpl::Generate(const core::TileRequest& request,
   return status;
 }
 
-void TileJobImpl::Encode(std::span<const float> heights,
-                         v1::HeightTile* tile) const {
-  std::string* data = tile->mutable_data();
-  data->resize(heights.size() * sizeof(std::uint16_t));
-  tile->set_clipped_samples(core::EncodeUint16(
-      heights, range_.minimum, range_.maximum,
-      {reinterpret_cast<std::uint16_t*>(data->data()), heights.size()}));
-}
-
 absl::Status TileJobImpl::MakeTile(std::int64_t index, std::stop_token stop,
                                    core::TileScratch* scratch,
                                    v1::HeightTile* tile) const {
@@ -121,43 +104,19 @@ absl::Status TileJobImpl::MakeTile(std::int64_t index, std::stop_token stop,
   const std::int64_t row = index / plan_.columns;
   const core::TileRequest request{plan_.level, plan_.sampling,
                                   plan_.TileWindow(column, row)};
-  const std::size_t samples =
-      static_cast<std::size_t>(request.window.width * request.window.height);
-
-  // Floats are generated where they are sent from. A message that had a tile of
-  // this size before keeps its bytes, which spares clearing them.
-  core::HeightStats stats;
-  if (plan_.encoding == v1::HEIGHT_ENCODING_UINT16_LE) {
-    const auto heights = std::make_unique_for_overwrite<float[]>(samples);
-    const std::span<float> span(heights.get(), samples);
-    const absl::Status status =
-        Generate(request, std::move(stop), scratch, span);
-    if (!status.ok()) return status;
-    stats = core::MeasureHeights(span);
-    Encode(span, tile);
-  } else {
-    std::string* data = tile->mutable_data();
-    data->resize(samples * sizeof(float));
-    const std::span<float> span(reinterpret_cast<float*>(data->data()),
-                                samples);
-    const absl::Status status =
-        Generate(request, std::move(stop), scratch, span);
-    if (!status.ok()) return status;
-    stats = core::MeasureHeights(span);
-    tile->set_clipped_samples(0);
-  }
+  const absl::Status status = FillHeightTile(
+      plan_.encoding, range_, request.window,
+      [&](std::span<float> heights) {
+        return Generate(request, std::move(stop), scratch, heights);
+      },
+      tile);
+  if (!status.ok()) return status;
   tile->set_index(index);
   tile->set_total(total());
   tile->set_tile_x(plan_.tile_x + column);
   tile->set_tile_y(plan_.tile_y + row);
-  WriteWindow(request.window, tile->mutable_window());
   tile->set_level(plan_.level);
   tile->set_sampling(header_.sampling());
-  tile->set_encoding(plan_.encoding);
-  tile->set_minimum(stats.minimum);
-  tile->set_maximum(stats.maximum);
-  tile->set_checksum(XXH3_64bits(tile->data().data(), tile->data().size()));
-  tile->set_nodata_samples(stats.nodata_samples);
   return absl::OkStatus();
 }
 

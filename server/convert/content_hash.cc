@@ -40,7 +40,7 @@ std::string ContentHash::Finish() {
   return text;
 }
 
-std::string CanonicalBytes(const v1::TerrainRecipe& recipe) {
+std::string CanonicalBytes(const google::protobuf::Message& recipe) {
   std::string bytes;
   {
     google::protobuf::io::StringOutputStream sink(&bytes);
@@ -51,7 +51,7 @@ std::string CanonicalBytes(const v1::TerrainRecipe& recipe) {
   return bytes;
 }
 
-std::string RecipeHash(const v1::TerrainRecipe& recipe) {
+std::string RecipeHash(const google::protobuf::Message& recipe) {
   ContentHash hash;
   hash.Add(CanonicalBytes(recipe));
   return hash.Finish();

@@ -5,13 +5,12 @@
 #ifndef TERRANE_SERVER_CONVERT_CONTENT_HASH_H_
 #define TERRANE_SERVER_CONVERT_CONTENT_HASH_H_
 
+#include <google/protobuf/message.h>
 #include <openssl/evp.h>
 
 #include <memory>
 #include <string>
 #include <string_view>
-
-#include "terrane/v1/terrain_recipe.pb.h"
 
 namespace terrane::server {
 
@@ -36,11 +35,11 @@ class ContentHash {
 };
 
 // The bytes that stand for a recipe: equal recipes have equal bytes.
-std::string CanonicalBytes(const v1::TerrainRecipe& recipe);
+std::string CanonicalBytes(const google::protobuf::Message& recipe);
 
 // Hash of a recipe's canonical bytes. Only the hash of a resolved recipe names
-// a terrain: an unresolved one leaves out what the defaults say.
-std::string RecipeHash(const v1::TerrainRecipe& recipe);
+// a world: an unresolved one leaves out what the defaults say.
+std::string RecipeHash(const google::protobuf::Message& recipe);
 
 }  // namespace terrane::server
 

@@ -10,8 +10,10 @@
 
 #include "core/base/violations.h"
 #include "core/grid/lattice_window.h"
+#include "core/surface/surface_spec.h"
 #include "core/terrain/spec_checks.h"
 #include "core/terrain/terrain_spec.h"
+#include "terrane/v1/surface_recipe.pb.h"
 #include "terrane/v1/terrain.pb.h"
 
 namespace terrane::server {
@@ -32,11 +34,21 @@ inline constexpr EnumTable<v1::HeightMapping, core::HeightMapping, 2>
         {v1::HEIGHT_MAPPING_BOLTZMANN, core::HeightMapping::kBoltzmann},
     }};
 
-inline constexpr EnumTable<v1::SplineBasis, core::SplineBasis, 3> kSplineBases{{
+inline constexpr EnumTable<v1::SplineBasis, core::SplineBasis, 5> kSplineBases{{
     {v1::SPLINE_BASIS_BSPLINE_CLAMPED, core::SplineBasis::kBSplineClamped},
     {v1::SPLINE_BASIS_BSPLINE_UNIFORM, core::SplineBasis::kBSplineUniform},
     {v1::SPLINE_BASIS_BEZIER, core::SplineBasis::kBezier},
+    {v1::SPLINE_BASIS_BILINEAR, core::SplineBasis::kBilinear},
+    {v1::SPLINE_BASIS_BICUBIC_HERMITE, core::SplineBasis::kBicubicHermite},
 }};
+
+inline constexpr EnumTable<v1::SurfaceMethod, core::SurfaceMethod, 4>
+    kSurfaceMethods{{
+        {v1::SURFACE_METHOD_PRODUCTS, core::SurfaceMethod::kProducts},
+        {v1::SURFACE_METHOD_ALONG_T, core::SurfaceMethod::kAlongT},
+        {v1::SURFACE_METHOD_TWO_FACTORS, core::SurfaceMethod::kTwoFactors},
+        {v1::SURFACE_METHOD_TWO_TERMS, core::SurfaceMethod::kTwoTerms},
+    }};
 
 inline constexpr EnumTable<v1::Interpolation, core::Interpolation, 3>
     kRasterInterpolations{{
@@ -57,6 +69,14 @@ inline constexpr EnumTable<v1::MacroCombine, core::MacroCombine, 3>
         {v1::MACRO_COMBINE_ADD, core::MacroCombine::kAdd},
         {v1::MACRO_COMBINE_MAXIMUM, core::MacroCombine::kMaximum},
         {v1::MACRO_COMBINE_MINIMUM, core::MacroCombine::kMinimum},
+    }};
+
+// Unset leaves the choice to the core, so no row stands for it; the first is
+// what every recipe may have.
+inline constexpr EnumTable<v1::DiscreteMethod, core::DiscreteMethod, 2>
+    kDiscreteMethods{{
+        {v1::DISCRETE_METHOD_CONDITION, core::DiscreteMethod::kCondition},
+        {v1::DISCRETE_METHOD_BUFFER, core::DiscreteMethod::kBuffer},
     }};
 
 // The quantity has no default: an unset one is a violation of its own.

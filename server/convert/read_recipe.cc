@@ -31,9 +31,9 @@ std::vector<double> ReadNumbers(const Numbers& numbers) {
 // One recipe being read.
 class RecipeReader {
  public:
-  RecipeReader(RasterSource* rasters, const core::SpecLimits& limits,
+  RecipeReader(const ContentSources& sources, const core::SpecLimits& limits,
                core::Violations* violations)
-      : rasters_(rasters), limits_(limits), violations_(violations) {}
+      : sources_(sources), limits_(limits), violations_(violations) {}
 
   void Read(const v1::TerrainRecipe& recipe, const Path& root);
   ReadRecipe Take() { return std::move(read_); }
@@ -51,6 +51,8 @@ class RecipeReader {
   core::Profile ReadProfile(const v1::Profile& profile, const Path& path);
   core::ContinuousConstraint ReadContinuous(
       const v1::ContinuousConstraint& constraint, const Path& path);
+  void ReadConstraints(const v1::TerrainRecipe& recipe, const Path& root);
+  void ReadSpots(const v1::SpotHeights& spots, const Path& path);
 
   template <typename Proto, typename Core, std::size_t kSize>
   Core Enum(const EnumTable<Proto, Core, kSize>& table, Proto value,
@@ -58,7 +60,7 @@ class RecipeReader {
     return ReadEnum(table, value, path, violations_);
   }
 
-  RasterSource* const rasters_;
+  const ContentSources sources_;
   const core::SpecLimits& limits_;
   core::Violations* const violations_;
   std::string raster_crs_;
@@ -90,7 +92,7 @@ core::RasterShape RecipeReader::ReadRaster(const v1::RasterShape& shape,
                                            const Path& path) {
   PlacedRaster placed;
   if (!shape.raster_id().empty()) {
-    placed = rasters_->Find(shape.raster_id());
+    placed = sources_.rasters->Find(shape.raster_id());
     if (placed.raster != nullptr) {
       read_.raster_ids[placed.raster.get()] = shape.raster_id();
       raster_crs_ = placed.crs;
@@ -216,6 +218,60 @@ core::DiscreteConstraint ReadDiscrete(const v1::DiscreteConstraint& message) {
   return result;
 }
 
+void RecipeReader::ReadConstraints(const v1::TerrainRecipe& recipe,
+                                   const Path& root) {
+  if (FewEnough(recipe.discrete_constraints(), limits_.max_discrete_constraints,
+                root.Field("discrete_constraints"))) {
+    for (const v1::DiscreteConstraint& one : recipe.discrete_constraints()) {
+      read_.spec.discrete_constraints.push_back(ReadDiscrete(one));
+    }
+  }
+  if (recipe.discrete_method() != v1::DISCRETE_METHOD_UNSPECIFIED) {
+    read_.spec.discrete_method =
+        Enum(kDiscreteMethods, recipe.discrete_method(),
+             root.Field("discrete_method"));
+  }
+  if (FewEnough(recipe.continuous_constraints(),
+                limits_.max_continuous_constraints,
+                root.Field("continuous_constraints"))) {
+    for (int i = 0; i < recipe.continuous_constraints_size(); ++i) {
+      read_.spec.continuous_constraints.push_back(ReadContinuous(
+          recipe.continuous_constraints(i),
+          root.Element("continuous_constraints", static_cast<std::size_t>(i))));
+    }
+  }
+}
+
+core::SpotLine ReadSpotLine(const v1::SpotLine& line) {
+  return {.vertices = ReadPoints(line.vertices()),
+          .heights = ReadNumbers(line.heights()),
+          .spacing = line.spacing(),
+          .standard_error = line.standard_error(),
+          .only_falls = line.only_falls()};
+}
+
+void RecipeReader::ReadSpots(const v1::SpotHeights& spots, const Path& path) {
+  core::SpotHeights& result = read_.spec.spots;
+  if (spots.has_level()) result.level = spots.level();
+  if (FewEnough(spots.points(), limits_.max_inline_spots,
+                path.Field("points"))) {
+    result.points.reserve(static_cast<std::size_t>(spots.points_size()));
+    for (const v1::SpotHeight& one : spots.points()) {
+      result.points.push_back(
+          {{one.x(), one.y()}, one.height(), one.standard_error()});
+    }
+  }
+  if (FewEnough(spots.lines(), limits_.max_inline_spots, path.Field("lines"))) {
+    for (const v1::SpotLine& line : spots.lines()) {
+      result.lines.push_back(ReadSpotLine(line));
+    }
+  }
+  if (spots.table_id().empty()) return;
+  result.table = sources_.spot_tables->FindTable(spots.table_id());
+  (result.table != nullptr ? read_.spot_table_id : read_.missing_spot_table) =
+      spots.table_id();
+}
+
 void RecipeReader::Read(const v1::TerrainRecipe& recipe, const Path& root) {
   core::TerrainSpec& spec = read_.spec;
   spec.dimensions = recipe.dimensions() == 0 ? 2 : recipe.dimensions();
@@ -238,21 +294,8 @@ void RecipeReader::Read(const v1::TerrainRecipe& recipe, const Path& root) {
   if (recipe.has_refinement()) {
     spec.refinement = {recipe.refinement().uniform_amplitude()};
   }
-  if (FewEnough(recipe.discrete_constraints(), limits_.max_discrete_constraints,
-                root.Field("discrete_constraints"))) {
-    for (const v1::DiscreteConstraint& one : recipe.discrete_constraints()) {
-      spec.discrete_constraints.push_back(ReadDiscrete(one));
-    }
-  }
-  if (FewEnough(recipe.continuous_constraints(),
-                limits_.max_continuous_constraints,
-                root.Field("continuous_constraints"))) {
-    for (int i = 0; i < recipe.continuous_constraints_size(); ++i) {
-      spec.continuous_constraints.push_back(ReadContinuous(
-          recipe.continuous_constraints(i),
-          root.Element("continuous_constraints", static_cast<std::size_t>(i))));
-    }
-  }
+  ReadConstraints(recipe, root);
+  ReadSpots(recipe.spots(), root.Field("spots"));
   read_.crs = recipe.has_frame() ? recipe.frame().crs()
               : spec.refinement  ? raster_crs_
                                  : "";
@@ -274,15 +317,15 @@ core::Frame ReadFrame(const v1::Frame& frame, const core::Path& path,
 }
 
 ReadRecipe ReadTerrainRecipe(const v1::TerrainRecipe& recipe,
-                             RasterSource* rasters,
+                             const ContentSources& sources,
                              const core::SpecLimits& limits,
                              const std::string& prefix,
                              core::Violations* violations) {
   const Path root(&prefix);
-  RecipeReader reader(rasters, limits, violations);
+  RecipeReader reader(sources, limits, violations);
   reader.Read(recipe, root);
   ReadRecipe read = reader.Take();
-  if (read.missing_raster.empty()) {
+  if (read.complete()) {
     core::ValidateSpec(read.spec, limits, prefix, violations);
   }
   return read;

@@ -94,7 +94,6 @@ class TilePlanner {
 
  private:
   void PlanSamples();
-  void PlanRange();
   void PlanExtent();
   void PlanWindow(const v1::Window& window);
   void PlanTileRange(const v1::TileRange& tiles);
@@ -132,38 +131,6 @@ void TilePlanner::PlanSamples() {
                    shares_edges ? 2 : 1, limits_.max_tile_size, violations_);
   plan_.stride = plan_.tile_size - (shares_edges ? 1 : 0);
   if (level_good) extent_ = ExtentOf(spec_, plan_.level, plan_.sampling);
-}
-
-void TilePlanner::PlanRange() {
-  switch (request_.encoding()) {
-    case v1::HEIGHT_ENCODING_UNSPECIFIED:
-    case v1::HEIGHT_ENCODING_FLOAT32_LE:
-      return;
-    case v1::HEIGHT_ENCODING_UINT16_LE:
-      plan_.encoding = request_.encoding();
-      break;
-    default:
-      violations_->Add(root_.Field("encoding").Text(),
-                       "must be a value that the API knows, got " +
-                           std::to_string(request_.encoding()));
-      return;
-  }
-  if (!request_.has_range()) return;
-  const Path range = root_.Field("range");
-  const EncodingRange asked{request_.range().minimum(),
-                            request_.range().maximum()};
-  core::SpecChecks checks(limits_.recipe, 2, violations_);
-  constexpr core::Range kRangeEnds{-1e12, 1e12};
-  const bool minimum_good =
-      checks.Number(range.Field("minimum"), asked.minimum, kRangeEnds);
-  const bool maximum_good =
-      checks.Number(range.Field("maximum"), asked.maximum, kRangeEnds);
-  if (minimum_good && maximum_good && asked.minimum >= asked.maximum) {
-    violations_->Add(range.Field("maximum").Text(),
-                     "must be above minimum " + NumberText(asked.minimum) +
-                         ", got " + NumberText(asked.maximum));
-  }
-  plan_.range = asked;
 }
 
 void TilePlanner::CutWindow() {
@@ -288,11 +255,46 @@ TilePlan TilePlanner::Plan() {
   plan_.first_tile = request_.first_tile();
   PlanSamples();
   PlanExtent();
-  PlanRange();
+  PlanEncoding(request_.encoding(),
+               request_.has_range() ? &request_.range() : nullptr, root_,
+               violations_, &plan_);
   return plan_;
 }
 
 }  // namespace
+
+void PlanEncoding(v1::HeightEncoding encoding, const v1::HeightRange* range,
+                  const core::Path& root, core::Violations* violations,
+                  TilePlan* plan) {
+  switch (encoding) {
+    case v1::HEIGHT_ENCODING_UNSPECIFIED:
+    case v1::HEIGHT_ENCODING_FLOAT32_LE:
+      return;
+    case v1::HEIGHT_ENCODING_UINT16_LE:
+      plan->encoding = encoding;
+      break;
+    default:
+      violations->Add(root.Field("encoding").Text(),
+                      "must be a value that the API knows, got " +
+                          std::to_string(encoding));
+      return;
+  }
+  if (range == nullptr) return;
+  const Path path = root.Field("range");
+  const EncodingRange asked{range->minimum(), range->maximum()};
+  core::FieldChecks checks(violations);
+  constexpr core::Range kRangeEnds{-1e12, 1e12};
+  const bool minimum_good =
+      checks.Number(path.Field("minimum"), asked.minimum, kRangeEnds);
+  const bool maximum_good =
+      checks.Number(path.Field("maximum"), asked.maximum, kRangeEnds);
+  if (minimum_good && maximum_good && asked.minimum >= asked.maximum) {
+    violations->Add(path.Field("maximum").Text(),
+                    "must be above minimum " + NumberText(asked.minimum) +
+                        ", got " + NumberText(asked.maximum));
+  }
+  plan->range = asked;
+}
 
 core::Window TilePlan::TileWindow(std::int64_t column, std::int64_t row) const {
   const std::int64_t x = column * stride;

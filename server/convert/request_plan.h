@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/field_checks.h"
 #include "core/base/violations.h"
 #include "core/grid/lattice_window.h"
 #include "core/terrain/terrain.h"
@@ -64,6 +65,12 @@ struct TileKind {
 TilePlan PlanTiles(const v1::StreamTilesRequest& request,
                    const core::TerrainSpec* spec, const Limits& limits,
                    const std::string& prefix, core::Violations* violations);
+
+// Checks how heights are to be encoded; `range` is null when the request has
+// none. Fields "encoding" and "range" below `root`.
+void PlanEncoding(v1::HeightEncoding encoding, const v1::HeightRange* range,
+                  const core::Path& root, core::Violations* violations,
+                  TilePlan* plan);
 
 // The tiles from plan.first_tile on, sorted by size: at most a handful of
 // kinds, however many tiles there are.

@@ -5,7 +5,7 @@
 // request itself. Writing what was read from a resolved recipe gives the same
 // recipe.
 //
-// Threads: any. Errors: violations, and a missing raster (ReadRecipe).
+// Threads: any. Errors: violations, and content that is not kept (ReadRecipe).
 #ifndef TERRANE_SERVER_CONVERT_TERRAIN_CONVERT_H_
 #define TERRANE_SERVER_CONVERT_TERRAIN_CONVERT_H_
 
@@ -15,14 +15,23 @@
 
 #include "core/base/violations.h"
 #include "core/terrain/spec_checks.h"
+#include "core/terrain/terrain.h"
 #include "core/terrain/terrain_spec.h"
 #include "server/convert/raster_source.h"
+#include "server/convert/spot_table_source.h"
+#include "terrane/v1/terrain.pb.h"
 #include "terrane/v1/terrain_recipe.pb.h"
 
 namespace terrane::server {
 
 // Largest text of a coordinate reference system.
 inline constexpr std::size_t kMaxCrsBytes = 16 * 1024;
+
+// Where the content that a recipe names by id comes from.
+struct ContentSources {
+  RasterSource* rasters = nullptr;
+  SpotTableSource* spot_tables = nullptr;
+};
 
 // A recipe for the core, and what the core does not need to know of it.
 struct ReadRecipe {
@@ -31,15 +40,22 @@ struct ReadRecipe {
   std::string crs;
   // The id of each raster that the spec holds.
   std::map<const core::Raster*, std::string> raster_ids;
-  // The first raster that the source does not keep; the spec has none in its
-  // place and is not checked.
+  // The first raster, and the spot table, that the sources do not keep; the
+  // spec has none in its place and is not checked.
   std::string missing_raster;
+  std::string missing_spot_table;
+  // The id of the spec's spot table.
+  std::string spot_table_id;
+
+  bool complete() const {
+    return missing_raster.empty() && missing_spot_table.empty();
+  }
 };
 
 // Converts and checks (core::ValidateSpec) a recipe. `prefix` stands before the
 // path of each field, such as "terrain.recipe.".
 ReadRecipe ReadTerrainRecipe(const v1::TerrainRecipe& recipe,
-                             RasterSource* rasters,
+                             const ContentSources& sources,
                              const core::SpecLimits& limits,
                              const std::string& prefix,
                              core::Violations* violations);
@@ -56,6 +72,9 @@ v1::TerrainRecipe WriteTerrainRecipe(const core::TerrainSpec& resolved,
 
 void WriteFrame(const core::Frame& frame, const std::string& crs,
                 v1::Frame* message);
+
+// What became of a terrain's spot heights.
+v1::SpotReport WriteSpotReport(const core::SpotReport& report);
 
 }  // namespace terrane::server
 

@@ -138,6 +138,30 @@ void WriteContinuous(const core::ContinuousConstraint& constraint,
   }
 }
 
+void WriteSpotLine(const core::SpotLine& line, v1::SpotLine* message) {
+  WritePoints(line.vertices, message->mutable_vertices());
+  message->mutable_heights()->Add(line.heights.begin(), line.heights.end());
+  message->set_spacing(line.spacing);
+  message->set_standard_error(line.standard_error);
+  message->set_only_falls(line.only_falls);
+}
+
+void WriteSpots(const core::SpotHeights& spots, const std::string& table_id,
+                v1::SpotHeights* message) {
+  for (const core::SpotHeight& spot : spots.points) {
+    v1::SpotHeight* point = message->add_points();
+    point->set_x(spot.point.x);
+    point->set_y(spot.point.y);
+    point->set_height(spot.height);
+    point->set_standard_error(spot.standard_error);
+  }
+  message->set_table_id(table_id);
+  for (const core::SpotLine& line : spots.lines) {
+    WriteSpotLine(line, message->add_lines());
+  }
+  if (spots.level) message->set_level(*spots.level);
+}
+
 }  // namespace
 
 void WriteFrame(const core::Frame& frame, const std::string& crs,
@@ -180,7 +204,23 @@ v1::TerrainRecipe WriteTerrainRecipe(const core::TerrainSpec& resolved,
        resolved.continuous_constraints) {
     WriteContinuous(one, recipe.add_continuous_constraints());
   }
+  if (resolved.discrete_method) {
+    recipe.set_discrete_method(
+        WriteEnum(kDiscreteMethods, *resolved.discrete_method));
+  }
+  if (!resolved.spots.empty()) {
+    WriteSpots(resolved.spots, read.spot_table_id, recipe.mutable_spots());
+  }
   return recipe;
+}
+
+v1::SpotReport WriteSpotReport(const core::SpotReport& report) {
+  v1::SpotReport message;
+  message.set_spots(report.spots);
+  message.set_level(report.level);
+  message.set_largest_move(report.largest_move);
+  message.set_merged(report.merged);
+  return message;
 }
 
 }  // namespace terrane::server

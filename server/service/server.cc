@@ -26,7 +26,9 @@ Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
       parts_{actor, &workers_, &gate_, log,
              std::make_shared<BufferPool>(kBufferPoolBytes)},
       terrain_service_(parts_),
+      surface_service_(parts_),
       raster_service_(parts_),
+      spot_table_service_(parts_),
       info_service_(parts_) {}
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(
@@ -40,7 +42,9 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(),
                            &server->port_);
   builder.RegisterService(&server->terrain_service_);
+  builder.RegisterService(&server->surface_service_);
   builder.RegisterService(&server->raster_service_);
+  builder.RegisterService(&server->spot_table_service_);
   builder.RegisterService(&server->info_service_);
   builder.SetMaxReceiveMessageSize(
       static_cast<int>(options.limits.max_request_bytes));
@@ -66,7 +70,9 @@ Server::~Server() {
 void Server::SetServing(bool serving) {
   grpc::HealthCheckServiceInterface* health = server_->GetHealthCheckService();
   for (const char* name : {"", v1::TerrainService::service_full_name(),
+                           v1::SurfaceService::service_full_name(),
                            v1::RasterService::service_full_name(),
+                           v1::SpotTableService::service_full_name(),
                            v1::InfoService::service_full_name()}) {
     health->SetServingStatus(name, serving);
   }

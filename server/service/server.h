@@ -18,6 +18,8 @@
 #include "server/service/call_context.h"
 #include "server/service/info_service.h"
 #include "server/service/raster_service.h"
+#include "server/service/spot_table_service.h"
+#include "server/service/surface_service.h"
 #include "server/service/terrain_service.h"
 
 namespace terrane::server {
@@ -57,7 +59,9 @@ class Server {
   WorkerPool workers_;
   ServiceParts parts_;
   TerrainServiceImpl terrain_service_;
+  SurfaceServiceImpl surface_service_;
   RasterServiceImpl raster_service_;
+  SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;
   int port_ = 0;
   // Last, so that it goes first: no call outlives what it works with.

@@ -1,5 +1,7 @@
 #include "server/service/terrain_service.h"
 
+#include "server/service/prepare_call.h"
+#include "server/service/terrain_source.h"
 #include "server/service/tile_stream.h"
 #include "server/service/unary_call.h"
 
@@ -7,7 +9,14 @@ namespace terrane::server {
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* TerrainServiceImpl::StreamTiles(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
-  return TileStream::Start(parts_, context, *request);
+  return TileStream::Start(parts_, "StreamTiles", context,
+                           MakeTerrainSource(parts_, *request));
+}
+
+grpc::ServerWriteReactor<v1::PrepareTerrainResponse>*
+TerrainServiceImpl::PrepareTerrain(grpc::CallbackServerContext* context,
+                                   const v1::PrepareTerrainRequest* request) {
+  return PrepareCall::Start(parts_, context, request);
 }
 
 grpc::ServerUnaryReactor* TerrainServiceImpl::GetProfile(

@@ -11,11 +11,12 @@ namespace terrane::server {
 // (server/service/tile_message.h); the rest are messages.
 using TerrainServiceBase =
     v1::TerrainService::WithRawCallbackMethod_StreamTiles<
-        v1::TerrainService::WithCallbackMethod_GetProfile<
-            v1::TerrainService::WithCallbackMethod_GetHeights<
-                v1::TerrainService::WithCallbackMethod_EstimateTiles<
-                    v1::TerrainService::WithCallbackMethod_GetPreset<
-                        v1::TerrainService::Service>>>>>;
+        v1::TerrainService::WithCallbackMethod_PrepareTerrain<
+            v1::TerrainService::WithCallbackMethod_GetProfile<
+                v1::TerrainService::WithCallbackMethod_GetHeights<
+                    v1::TerrainService::WithCallbackMethod_EstimateTiles<
+                        v1::TerrainService::WithCallbackMethod_GetPreset<
+                            v1::TerrainService::Service>>>>>>;
 
 class TerrainServiceImpl final : public TerrainServiceBase {
  public:
@@ -24,6 +25,9 @@ class TerrainServiceImpl final : public TerrainServiceBase {
   grpc::ServerWriteReactor<grpc::ByteBuffer>* StreamTiles(
       grpc::CallbackServerContext* context,
       const grpc::ByteBuffer* request) override;
+  grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* PrepareTerrain(
+      grpc::CallbackServerContext* context,
+      const v1::PrepareTerrainRequest* request) override;
   grpc::ServerUnaryReactor* GetProfile(
       grpc::CallbackServerContext* context,
       const v1::GetProfileRequest* request,

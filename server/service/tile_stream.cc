@@ -1,12 +1,9 @@
 #include "server/service/tile_stream.h"
 
-#include <grpcpp/impl/codegen/proto_utils.h>
-
 #include <utility>
 
 #include "core/base/violations.h"
 #include "server/service/status.h"
-#include "server/service/tile_message.h"
 
 namespace terrane::server {
 namespace {
@@ -18,21 +15,23 @@ constexpr std::chrono::milliseconds kRetryDelay{1000};
 }  // namespace
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* TileStream::Start(
-    const ServiceParts& parts, grpc::CallbackServerContext* context,
-    const grpc::ByteBuffer& request) {
-  std::shared_ptr<TileStream> stream(new TileStream(parts, context, request));
+    const ServiceParts& parts, const char* method,
+    grpc::CallbackServerContext* context,
+    std::unique_ptr<StreamSource> source) {
+  std::shared_ptr<TileStream> stream(
+      new TileStream(parts, method, context, std::move(source)));
   stream->self_ = stream;
   stream->EnterGate();
   return stream.get();
 }
 
-TileStream::TileStream(const ServiceParts& parts,
+TileStream::TileStream(const ServiceParts& parts, const char* method,
                        grpc::CallbackServerContext* context,
-                       const grpc::ByteBuffer& request)
+                       std::unique_ptr<StreamSource> source)
     : parts_(parts),
       context_(context),
-      request_(request),
-      record_(BeginCall("StreamTiles", context)) {}
+      source_(std::move(source)),
+      record_(BeginCall(method, context)) {}
 
 void TileStream::EnterGate() {
   // Locked, so that the task cannot end the stream before the ticket is kept.
@@ -66,50 +65,23 @@ void TileStream::RunTask(Clock::time_point submitted,
     if (end_.has_value()) return;  // cancelled while in the queue
     running_ = true;
   }
-  const absl::Status status = job_ == nullptr ? Open() : MakeTile(scratch);
+  // Only this task touches the source and the record while it runs.
+  auto made = opened_ ? source_->Next(stop_.get_token(), scratch, &record_)
+                      : source_->Open(stop_.get_token(), &record_);
   std::unique_lock lock(mutex_);
   running_ = false;
   record_.queued += start - submitted;
   record_.generated += Clock::now() - start;
-  if (status.ok()) {
-    ahead_ = std::move(made_);
-    all_made_ = next_tile_ == job_->total();
+  if (made.ok()) {
+    opened_ = true;
+    ahead_ = *std::move(made);
+    all_made_ = source_->AllMade();
   } else {
     // The core knows that it was stopped, the call knows why.
-    EndWith(absl::IsCancelled(status) ? CancelStatus(*context_) : status);
+    EndWith(absl::IsCancelled(made.status()) ? CancelStatus(*context_)
+                                             : made.status());
   }
   Advance(std::move(lock));
-}
-
-absl::Status TileStream::Open() {
-  v1::StreamTilesRequest request;
-  const grpc::Status parsed =
-      grpc::SerializationTraits<v1::StreamTilesRequest>::Deserialize(&request_,
-                                                                     &request);
-  if (!parsed.ok()) {
-    return absl::InvalidArgumentError(
-        "the request is not a StreamTilesRequest");
-  }
-  auto job = parts_.actor->OpenTiles(request);
-  if (!job.ok()) return job.status();
-  job_ = *std::move(job);
-  next_tile_ = job_->first();
-  record_.recipe_hash = job_->header().recipe_hash();
-  made_ = HeaderMessage(job_->header());
-  return absl::OkStatus();
-}
-
-absl::Status TileStream::MakeTile(core::TileScratch* scratch) {
-  tile_.set_allocated_data(parts_.buffers->Take().release());
-  const absl::Status status =
-      job_->MakeTile(next_tile_, stop_.get_token(), scratch, &tile_);
-  if (!status.ok()) return status;
-  ++next_tile_;
-  record_.tiles += 1;
-  record_.samples += tile_.window().width() * tile_.window().height();
-  record_.bytes += static_cast<std::int64_t>(tile_.data().size());
-  made_ = TakeTileMessage(parts_.buffers, &tile_);
-  return absl::OkStatus();
 }
 
 void TileStream::EndWith(const absl::Status& status) {
@@ -129,7 +101,7 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
     ahead_.reset();
     writing_ = true;
   }
-  const bool generate = MayGenerate() && job_ != nullptr;
+  const bool generate = MayGenerate() && opened_;
   if (generate) queued_ = true;
   if (all_made_ && !ahead_.has_value() && !writing_) EndWith(absl::OkStatus());
   finished_ = end_.has_value() && !writing_ && !running_;

@@ -1,4 +1,4 @@
-// TileStream: one StreamTiles rpc.
+// TileStream: one server-streaming rpc, whose messages a StreamSource makes.
 //
 // At most two messages are in hand: one being written, and one ahead of it,
 // made or being made. A slow reader therefore costs two tiles, whatever it
@@ -26,14 +26,16 @@
 #include <stop_token>
 
 #include "server/service/call_context.h"
+#include "server/service/stream_source.h"
 
 namespace terrane::server {
 
 class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
   static grpc::ServerWriteReactor<grpc::ByteBuffer>* Start(
-      const ServiceParts& parts, grpc::CallbackServerContext* context,
-      const grpc::ByteBuffer& request);
+      const ServiceParts& parts, const char* method,
+      grpc::CallbackServerContext* context,
+      std::unique_ptr<StreamSource> source);
 
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
@@ -42,17 +44,16 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  private:
   using Clock = std::chrono::steady_clock;
 
-  TileStream(const ServiceParts& parts, grpc::CallbackServerContext* context,
-             const grpc::ByteBuffer& request);
+  TileStream(const ServiceParts& parts, const char* method,
+             grpc::CallbackServerContext* context,
+             std::unique_ptr<StreamSource> source);
 
   void EnterGate();
-  // Queues the next task: opening the job first, then a tile each. The stream
-  // may end at any time from here on, so the task brings its own share of it.
+  // Queues the next task: opening the source first, then a message each. The
+  // stream may end at any time from here on, so the task brings its own share
+  // of it.
   static void Submit(std::shared_ptr<TileStream> stream);
   void RunTask(Clock::time_point submitted, core::TileScratch* scratch);
-  // The work of a task, without the mutex.
-  absl::Status Open();
-  absl::Status MakeTile(core::TileScratch* scratch);
   // Ends the stream with a status, unless it has one.
   void EndWith(const absl::Status& status);
   // Does what can be done now: write, generate, finish. Takes the lock over.
@@ -65,11 +66,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   std::shared_ptr<TileStream> self_;
 
   // Of the task at work, one at a time.
-  grpc::ByteBuffer request_;
-  std::shared_ptr<const TileJob> job_;
-  std::int64_t next_tile_ = 0;
-  v1::HeightTile tile_;
-  grpc::ByteBuffer made_;
+  const std::unique_ptr<StreamSource> source_;
 
   // Of the write under way.
   grpc::ByteBuffer outgoing_;
@@ -81,6 +78,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   bool queued_ = false;                    // a task waits for a worker
   bool running_ = false;                   // a worker is at it
   bool writing_ = false;
+  bool opened_ = false;
   bool all_made_ = false;
   std::optional<absl::Status> end_;  // set early by a failure or OnCancel
   bool finished_ = false;

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -141,6 +142,52 @@ TerrainSpec WithDiscrete(TerrainSpec spec, int count, int level,
   return spec;
 }
 
+// Spot heights on the lattice of `level`: `count` over the eight tiles of Tile,
+// or, moved down by `tiles_below`, as many beside them.
+TerrainSpec WithSpots(TerrainSpec spec, int count, int level, std::int64_t side,
+                      double tiles_below) {
+  const double tile_side = std::ldexp(static_cast<double>(side), -level);
+  spec.spots.level = level;
+  std::set<std::pair<double, double>> taken;
+  for (const Point2& share : Scatter(count, 1, 1)) {
+    const auto snap = [&](double place) {
+      return std::ldexp(std::nearbyint(std::ldexp(place * tile_side, level)),
+                        -level);
+    };
+    const Point2 point = {snap(share.x * 8), snap(share.y + tiles_below)};
+    if (!taken.insert({point.x, point.y}).second) continue;
+    // As far from the macro shape as ground of that size goes.
+    const double height = spec.macro.base + tile_side * std::sin(share.x * 900);
+    spec.spots.points.push_back({point, height});
+  }
+  return spec;
+}
+
+// `count` spots over 16 x 16 cells, snapped to `level`: preparation alone.
+void PrepareSpots(benchmark::State& state, int count, int level) {
+  TerrainSpec spec;
+  spec.domain = Domain{16, 16};
+  auto table = std::make_shared<std::vector<SpotHeight>>();
+  for (const Point2& share : Scatter(count, 1, 1)) {
+    table->push_back(
+        {{(share.x + 0.5) * 16, (share.y + 0.5) * 16}, std::sin(share.x * 40)});
+  }
+  spec.spots.table = std::move(table);
+  spec.spots.level = level;
+  std::int64_t bytes = 0;
+  for (auto _ : state) {
+    const auto terrain = Terrain::Create(spec);
+    if (!terrain.ok()) {
+      state.SkipWithError(terrain.status().ToString().c_str());
+      return;
+    }
+    bytes = (*terrain)->MemoryBytes();
+  }
+  state.SetItemsProcessed(state.iterations() * count);
+  state.counters["table_bytes_per_spot"] =
+      static_cast<double>(bytes) / static_cast<double>(count);
+}
+
 TerrainSpec Refined() {
   auto raster = std::make_shared<Raster>();
   raster->width = 400;
@@ -219,6 +266,26 @@ void RegisterConstraints() {
   }
 }
 
+void RegisterSpots() {
+  const TerrainSpec bare =
+      SpecOf(FractalSource::kSubdivision, HeightMapping::kLinear);
+  constexpr std::int64_t kSide = 256;
+  constexpr int kLevel = 20;
+  RegisterTile("spots_none", bare, kLevel, kSide);
+  RegisterTile("spots_100_beside", WithSpots(bare, 800, kLevel, kSide, 100),
+               kLevel, kSide);
+  RegisterTile("spots_1_inside", WithSpots(bare, 8, kLevel, kSide, 0), kLevel,
+               kSide);
+  RegisterTile("spots_100_inside", WithSpots(bare, 800, kLevel, kSide, 0),
+               kLevel, kSide);
+  for (const int count : {100, 10'000, 100'000}) {
+    benchmark::RegisterBenchmark(
+        ("prepare/spots:" + std::to_string(count) + "/level:12").c_str(),
+        [count](benchmark::State& state) { PrepareSpots(state, count, 12); })
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
 void RegisterRefinement() {
   for (const std::int64_t side : kSides) {
     for (const int level : {3, 8, 20}) {
@@ -237,6 +304,7 @@ void RegisterAll() {
   }
   RegisterChains();
   RegisterConstraints();
+  RegisterSpots();
   RegisterRefinement();
 }
 

@@ -34,11 +34,12 @@ v1::HeightTile Tile(std::int64_t index) {
   return tile;
 }
 
-grpc::Status RasterNotFound(const std::string& raster_id) {
+grpc::Status NotKept(const std::string& reason, const std::string& key,
+                     const std::string& id) {
   v1::ErrorInfo info;
-  info.set_reason("RASTER_NOT_FOUND");
+  info.set_reason(reason);
   info.set_domain("terrane");
-  (*info.mutable_metadata())["raster_id"] = raster_id;
+  (*info.mutable_metadata())[key] = id;
   v1::ErrorStatus details;
   google::protobuf::Any* detail = details.add_details();
   detail->set_type_url("type.googleapis.com/google.rpc.ErrorInfo");
@@ -48,13 +49,19 @@ grpc::Status RasterNotFound(const std::string& raster_id) {
 
 // Serves a stream of kTiles tiles; the tests set how it fails.
 class FaultyServer : public v1::TerrainService::Service,
-                     public v1::RasterService::Service {
+                     public v1::RasterService::Service,
+                     public v1::SpotTableService::Service {
  public:
   grpc::Status StreamTiles(
       grpc::ServerContext* context, const v1::StreamTilesRequest* request,
       grpc::ServerWriter<v1::StreamTilesResponse>* writer) override {
     first_tiles.push_back(request->first_tile());
-    if (!kept_raster) return RasterNotFound("sha256:r");
+    if (!kept_raster) {
+      return NotKept("RASTER_NOT_FOUND", "raster_id", "sha256:r");
+    }
+    if (!kept_table) {
+      return NotKept("SPOT_TABLE_NOT_FOUND", "table_id", "sha256:t");
+    }
     v1::StreamTilesResponse message;
     v1::StreamHeader* header = message.mutable_header();
     header->set_tile_size(1);
@@ -99,10 +106,46 @@ class FaultyServer : public v1::TerrainService::Service,
     return grpc::Status::OK;
   }
 
+  grpc::Status UploadSpotTable(
+      grpc::ServerContext*,
+      grpc::ServerReader<v1::UploadSpotTableRequest>* reader,
+      v1::UploadSpotTableResponse* response) override {
+    v1::UploadSpotTableRequest part;
+    std::string columns;
+    while (reader->Read(&part)) columns += part.chunk();
+    uploads.push_back(columns.size());
+    kept_table = true;
+    response->set_table_id("sha256:t");
+    return grpc::Status::OK;
+  }
+
+  grpc::Status PrepareTerrain(
+      grpc::ServerContext*, const v1::PrepareTerrainRequest*,
+      grpc::ServerWriter<v1::PrepareTerrainResponse>* writer) override {
+    ++prepare_calls;
+    v1::PrepareTerrainResponse message;
+    for (const double fraction : {0.25, 0.5}) {
+      message.mutable_progress()->set_fraction(fraction);
+      writer->Write(message);
+      if (prepare_calls == cut_prepare_call) {
+        return {grpc::StatusCode::UNAVAILABLE, "cut"};
+      }
+    }
+    if (!ends_without_result) {
+      message.mutable_prepared()->set_recipe_hash("sha256:p");
+      writer->Write(message);
+    }
+    return grpc::Status::OK;
+  }
+
   std::int64_t tiles_before_cut = kTiles + 1;
   std::atomic<std::int64_t> damaged_tile = -1;
   bool hang = false;
   std::atomic<bool> kept_raster = true;
+  std::atomic<bool> kept_table = true;
+  int prepare_calls = 0;
+  int cut_prepare_call = 0;
+  bool ends_without_result = false;
   std::atomic<bool> saw_cancel = false;
   grpc::Status preset_status;
   int preset_calls = 0;
@@ -120,6 +163,8 @@ class RemoteBackendTest : public testing::Test {
     builder.RegisterService(
         static_cast<v1::TerrainService::Service*>(&faulty_));
     builder.RegisterService(static_cast<v1::RasterService::Service*>(&faulty_));
+    builder.RegisterService(
+        static_cast<v1::SpotTableService::Service*>(&faulty_));
     server_ = builder.BuildAndStart();
     ASSERT_NE(server_, nullptr);
     backend_ =
@@ -200,6 +245,36 @@ TEST_F(RemoteBackendTest, EvictedRasterIsUploadedAgainOnce) {
   EXPECT_EQ(Stream(), absl::OkStatus());
   EXPECT_EQ(received_, "012345");
   EXPECT_THAT(faulty_.uploads, ElementsAre(1'200'000U, 1'200'000U));
+}
+
+TEST_F(RemoteBackendTest, EvictedSpotTableIsUploadedAgainBesideARaster) {
+  const auto raster = std::make_shared<const core::Raster>(
+      core::Raster{2, 2, {}, std::vector<float>(4, 1.0F)});
+  const auto table = std::make_shared<const SpotTable>(
+      SpotTable{{1, 2}, {3, 4}, {5, 6}, {0, 0.5}, {2, 3}});
+  ASSERT_TRUE(backend_->UploadRaster(raster, {}).ok());
+  ASSERT_TRUE(backend_->UploadSpotTable(table, {}).ok());
+  faulty_.kept_raster = false;
+  faulty_.kept_table = false;
+  EXPECT_EQ(Stream(), absl::OkStatus());
+  EXPECT_EQ(received_, "012345");
+  EXPECT_THAT(faulty_.uploads, ElementsAre(16U, 64U, 16U, 64U));
+}
+
+TEST_F(RemoteBackendTest, PreparationShowsProgressAndIsDoneAgainWhenCut) {
+  faulty_.cut_prepare_call = 1;
+  std::vector<double> shown;
+  const auto prepared = backend_->PrepareTerrain(
+      {}, [&](double fraction) { shown.push_back(fraction); }, {});
+  ASSERT_TRUE(prepared.ok()) << prepared.status();
+  EXPECT_EQ(prepared->recipe_hash(), "sha256:p");
+  EXPECT_THAT(shown, ElementsAre(0.25, 0.25, 0.5));
+}
+
+TEST_F(RemoteBackendTest, PreparationWithoutResultIsAnError) {
+  faulty_.ends_without_result = true;
+  EXPECT_EQ(backend_->PrepareTerrain({}, {}, {}).status().code(),
+            absl::StatusCode::kDataLoss);
 }
 
 TEST_F(RemoteBackendTest, RasterOfSomeoneElseIsNotFound) {

@@ -34,10 +34,10 @@ FractalLattice MakeLattice(const Case& c) {
   model.source = c.source;
   model.mirror = {c.domain};
   model.roughness = c.roughness;
-  return FractalLattice({c.seed, c.source, {c.domain}, false},
-                        DeviationModel(model),
-                        std::make_shared<const DiscreteConstraints>(
-                            *DiscreteConstraints::Create(spec, Frame())));
+  return FractalLattice(
+      {c.seed, c.source, {c.domain}, false}, DeviationModel(model),
+      {.constraints = std::make_shared<const DiscreteConstraints>(
+           *DiscreteConstraints::Create(spec, Frame{}))});
 }
 
 std::vector<float> Values(const FractalLattice& lattice, int level,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -148,6 +149,86 @@ TEST(SplineBasisTest, DegreeOneIsAPolyline) {
   const Basis basis = Basis::ClampedBSpline(3, 1);
   EXPECT_DOUBLE_EQ(Curve(basis, {2, 6, 4}, 0.25), 4);
   EXPECT_DOUBLE_EQ(Curve(basis, {2, 6, 4}, 0.75), 5);
+}
+
+TEST(SplineBasisTest, HermiteMeetsEveryPointAndItsFunctionsSumToOne) {
+  for (const int count : {2, 3, 4, 9, 64}) {
+    const Basis basis = Basis::CubicHermite(count);
+    const std::vector<double> control = Controls(count);
+    const std::vector<double> ones(control.size(), 1.0);
+    for (int i = 0; i < count; ++i) {
+      EXPECT_NEAR(Curve(basis, control, i / (count - 1.0)),
+                  control[static_cast<std::size_t>(i)], kTolerance);
+    }
+    for (int step = 0; step <= 200; ++step) {
+      EXPECT_NEAR(Curve(basis, ones, step / 200.0), 1, kTolerance);
+    }
+  }
+}
+
+// Its tangents are half the steps between neighbours, so it follows a parabola
+// but in the two end cells, and a line everywhere.
+TEST(SplineBasisTest, HermiteFollowsLinesAndParabolas) {
+  std::vector<double> line;
+  std::vector<double> parabola;
+  for (int i = 0; i < 8; ++i) {
+    line.push_back(3.0 * i - 1);
+    parabola.push_back(1.0 * i * i);
+  }
+  const Basis basis = Basis::CubicHermite(8);
+  for (int step = 0; step <= 700; ++step) {
+    const double x = step / 100.0;
+    EXPECT_NEAR(Curve(basis, line, x / 7), 3 * x - 1, 1e-11);
+    if (x >= 1 && x <= 6) {
+      EXPECT_NEAR(Curve(basis, parabola, x / 7), x * x, 1e-11);
+    }
+  }
+  EXPECT_NEAR(Curve(Basis::CubicHermite(2), {2, 5}, 0.25), 2.75, kTolerance);
+}
+
+TEST(SplineBasisTest, LargestSumsAreReachedAndNeverPassed) {
+  std::vector<Basis> bases = AllBases();
+  for (const int count : {2, 3, 4, 9}) {
+    bases.push_back(Basis::CubicHermite(count));
+  }
+  for (const Basis& basis : bases) {
+    double squared = 0;
+    double absolute = 0;
+    // Steps that meet the knots and the middles between them.
+    const int steps = 64 * basis.count() * (basis.count() - 1);
+    for (int step = 0; step <= steps; ++step) {
+      std::array<double, Basis::kMaxCount> values;
+      basis.Values(static_cast<double>(step) / steps, values);
+      double squares = 0;
+      double sizes = 0;
+      for (int k = 0; k < basis.support(); ++k) {
+        const double value = values[static_cast<std::size_t>(k)];
+        squares += value * value;
+        sizes += std::fabs(value);
+      }
+      squared = std::max(squared, squares);
+      absolute = std::max(absolute, sizes);
+    }
+    EXPECT_LE(squared, basis.LargestSquaredSum() + kTolerance);
+    EXPECT_GE(squared, 0.999 * basis.LargestSquaredSum());
+    EXPECT_LE(absolute, basis.LargestAbsoluteSum() + kTolerance);
+  }
+}
+
+TEST(SplineBasisTest, EveryKindOfNetHasItsBasis) {
+  const std::vector<double> control = Controls(7);
+  const auto at = [&](SplineBasis kind) {
+    return Curve(Basis::Of(kind, 7, 2), control, 0.3);
+  };
+  EXPECT_EQ(at(SplineBasis::kBezier), Curve(Basis::Bernstein(7), control, 0.3));
+  EXPECT_EQ(at(SplineBasis::kBSplineUniform),
+            Curve(Basis::UniformBSpline(7, 2), control, 0.3));
+  EXPECT_EQ(at(SplineBasis::kBSplineClamped),
+            Curve(Basis::ClampedBSpline(7, 2), control, 0.3));
+  EXPECT_EQ(at(SplineBasis::kBilinear),
+            Curve(Basis::ClampedBSpline(7, 1), control, 0.3));
+  EXPECT_EQ(at(SplineBasis::kBicubicHermite),
+            Curve(Basis::CubicHermite(7), control, 0.3));
 }
 
 TEST(SplineBasisTest, ParametersOutsideAreCut) {

@@ -158,9 +158,54 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Constraints, ValidateRuleTest,
     ::testing::Values(
-        Rule{"DiscreteNeedsMidpoint",
-             [](TerrainSpec* s) { s->discrete_constraints.emplace_back(); },
-             "discrete_constraints", "need source MIDPOINT, got SUBDIVISION"},
+        Rule{"BufferNeedsMidpoint",
+             [](TerrainSpec* s) {
+               s->discrete_constraints.emplace_back();
+               s->discrete_method = DiscreteMethod::kBuffer;
+             },
+             "discrete_method",
+             "must be CONDITION with source SUBDIVISION, got BUFFER"},
+        Rule{"BufferBesideSpots",
+             [](TerrainSpec* s) {
+               s->source = FractalSource::kMidpoint;
+               s->discrete_method = DiscreteMethod::kBuffer;
+               s->spots.points.emplace_back();
+             },
+             "discrete_method", "must be CONDITION with spot heights"},
+        Rule{"SpotNan",
+             [](TerrainSpec* s) {
+               s->spots.points = {{}, {.point = {kNan, 0}}};
+             },
+             "spots.points[1].x", "got nan"},
+        Rule{"SpotHeight",
+             [](TerrainSpec* s) { s->spots.points = {{.height = 2e9}}; },
+             "spots.points[0].height", "got 2e+09"},
+        Rule{"SpotError",
+             [](TerrainSpec* s) { s->spots.points = {{.standard_error = -1}}; },
+             "spots.points[0].standard_error", "got -1"},
+        Rule{"SpotLevel",
+             [](TerrainSpec* s) {
+               s->spots.points.emplace_back();
+               s->spots.level = 31;
+             },
+             "spots.level", "must be in [0, 30], got 31"},
+        Rule{"SpotTableRow",
+             [](TerrainSpec* s) {
+               s->spots.table = std::make_shared<std::vector<SpotHeight>>(
+                   std::vector<SpotHeight>{{}, {.height = kNan}});
+             },
+             "spots.table[1].height", "got nan"},
+        Rule{"SpotLineVertices",
+             [](TerrainSpec* s) {
+               s->spots.lines = {{.vertices = {{0, 0}}}};
+             },
+             "spots.lines[0].vertices", "at least 2"},
+        Rule{"SpotLineHeights",
+             [](TerrainSpec* s) {
+               s->spots.lines = {
+                   {.vertices = {{0, 0}, {1, 1}}, .heights = {1, 2, 3}}};
+             },
+             "spots.lines[0].heights", "one element a vertex, 2, or none"},
         Rule{"DiscreteNan",
              [](TerrainSpec* s) {
                s->source = FractalSource::kMidpoint;

@@ -16,9 +16,11 @@ import time
 import unittest
 
 import numpy
-from osgeo import gdal
+from osgeo import gdal, ogr, osr
 
 gdal.UseExceptions()
+ogr.UseExceptions()
+osr.UseExceptions()
 TERRANE, SERVER, DATA = sys.argv[1:4]
 DEM = os.path.join(DATA, "jacksboro-3arcsec-4326.tif")
 
@@ -70,6 +72,26 @@ class CliTest(unittest.TestCase):
                 self.ask("terrain", *choice, "--out", remote)
                 self.run_terrane("terrain", *choice, "--local", "--threads", "3", "--out", local)
                 self.assertTrue(filecmp.cmp(remote, local, shallow=False), (choice, extension))
+
+    def test_surfaces_are_the_same_from_the_server_and_locally(self):
+        for extension in ["glb", "obj", "tif", "f32"]:
+            remote, local = self.folder / f"r.{extension}", self.folder / f"l.{extension}"
+            choice = ["surface", "--preset", "surface/fig05", "--size", "300x270", "--seed", "9"]
+            self.ask(*choice, "--out", remote)
+            self.run_terrane(*choice, "--local", "--threads", "3", "--out", local)
+            self.assertTrue(filecmp.cmp(remote, local, shallow=False), extension)
+
+    def test_a_surface_of_a_net_from_a_file(self):
+        net = self.folder / "net.csv"
+        net.write_text("x,y,z\n" + "".join(f"{i},{j},{i * j}\n" for j in range(5) for i in range(4)))
+        out = self.folder / "net.tif"
+        self.ask("surface", "--net", net, "--net-columns", "4", "--basis", "bicubic-hermite", "--size", "31x41", "--out", out)
+        heights = gdal.Open(str(out)).ReadAsArray()
+        self.assertEqual(heights.shape, (41, 31))
+        # Trained to a response of 1, the corners keep their points.
+        self.assertAlmostEqual(float(heights[40, 30]), 12, places=4)
+        failed = self.ask("surface", "--net", net, "--out", self.folder / "x.glb", expected=1)
+        self.assertIn("20 points make no rectangle", failed.stderr)
 
     def test_refined_model_keeps_its_posts_and_place(self):
         out = self.folder / "fine.tif"
@@ -180,6 +202,9 @@ class CliTest(unittest.TestCase):
             ["terrain", "--out", out, "--range", "5,5"],
             ["terrain", "--out", out, "--tile-size", "255"],
             ["terrain", "--out", out, "--tiles", "1,2"],
+            ["terrain", "--out", out, "--spots", self.folder / "missing.csv"],
+            ["terrain", "--out", out, "--field", "z"],
+            ["verify", DEM],
             ["render", DEM, "--out", self.folder / "a.jpg"],
             ["render", self.folder / "missing.tif", "--out", self.folder / "a.png"],
         ]:
@@ -252,6 +277,101 @@ class CliTest(unittest.TestCase):
         last = json.loads(done.stderr.splitlines()[-1])
         self.assertEqual(last["samples"], last["total"])
 
+    def write_spots(self, name, rows, header="x,y,z"):
+        path = self.folder / name
+        path.write_text("\n".join([header, *(",".join(repr(float(value)) for value in row) for row in rows)]) + "\n")
+        return path
+
+    def write_layer(self, name, features, epsg):
+        """A GeoPackage of WKT geometries with their elevations."""
+        crs = osr.SpatialReference()
+        crs.ImportFromEPSG(epsg)
+        crs.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+        path = self.folder / name
+        source = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
+        layer = source.CreateLayer("survey", crs)
+        layer.CreateField(ogr.FieldDefn("elevation", ogr.OFTReal))
+        for text, elevation in features:
+            feature = ogr.Feature(layer.GetLayerDefn())
+            feature.SetGeometry(ogr.CreateGeometryFromWkt(text))
+            feature.SetField("elevation", elevation)
+            layer.CreateFeature(feature)
+        return path
+
+    def test_spots_of_a_csv_are_met_exactly(self):
+        random = numpy.random.default_rng(7)
+        place = random.choice(257 * 257, 500, replace=False)
+        rows = [(index % 257, index // 257, height) for index, height in zip(place, random.normal(0, 30, 500))]
+        spots = self.write_spots("spots.csv", rows)
+        choice = ["--seed", "7", "--fidelity", "100", "--window", "0,0,257,257", "--spots", spots]
+        out, local = self.folder / "a.tif", self.folder / "b.tif"
+        done = self.ask("terrain", *choice, "--out", out)
+        self.assertIn("500 spots met exactly at level 0, farthest moved 0 by snapping", done.stderr)
+        self.run_terrane("terrain", *choice, "--local", "--out", local)
+        self.assertTrue(filecmp.cmp(out, local, shallow=False))
+        report = json.loads(self.run_terrane("verify", out, "--spots", spots, "--json").stdout)
+        self.assertTrue(report["passed"])
+        self.assertEqual((report["spots"], report["on_samples"]["count"]), (500, 500))
+        heights = gdal.Open(str(out)).ReadAsArray()
+        for x, y, z in rows:
+            self.assertEqual(heights[int(y), int(x)], numpy.float32(z))
+
+    def test_spots_of_a_layer_are_brought_into_the_models_crs(self):
+        model = gdal.Open(DEM)
+        place = model.GetGeoTransform()
+        # Samples of level 1 between the posts, whose heights are the model's own.
+        points = [(place[0] + i * place[1], place[3] + j * place[5], 900 + i) for i, j in [(40, 30), (200, 111), (333, 222)]]
+        web = osr.SpatialReference()
+        web.ImportFromEPSG(3857)
+        degrees = model.GetSpatialRef()
+        degrees.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+        to_web = osr.CoordinateTransformation(degrees, web)
+        features = []
+        for x, y, z in points:
+            web_x, web_y, _ = to_web.TransformPoint(x, y)
+            features.append((f"POINT ({web_x!r} {web_y!r})", z))
+        spots = self.write_layer("spots.gpkg", features, 3857)
+        out = self.folder / "met.tif"
+        choice = ["--dem", DEM, "--level", "1", "--spots", spots, "--field", "elevation"]
+        done = self.ask("terrain", *choice, "--out", out)
+        self.assertIn("3 spots met exactly at level 1", done.stderr)
+        self.run_terrane("verify", out, "--spots", spots, "--field", "elevation", "--tolerance", "0.001")
+        done = self.run_terrane("verify", DEM, "--spots", spots, "--field", "elevation", "--tolerance", "1", expected=1)
+        self.assertIn("not met", done.stdout)
+
+    def test_lines_are_spots_all_along(self):
+        river = self.write_layer("river.gpkg", [("LINESTRING Z (8 40 60, 56 40 12)", 0)], 3857)
+        out = self.folder / "a.tif"
+        self.ask("terrain", "--fidelity", "25", "--window", "0,0,65,65", "--spots", river, "--out", out)
+        heights = gdal.Open(str(out)).ReadAsArray()
+        numpy.testing.assert_allclose(heights[40, 8:57], numpy.linspace(60, 12, 49), atol=1e-4)
+
+    def test_spots_that_contradict_are_named_by_line(self):
+        spots = self.write_spots("spots.csv", [(1, 1, 5), (9, 9, 2), (1, 1, 6)])
+        out = self.folder / "a.tif"
+        done = self.ask("terrain", "--window", "0,0,16,16", "--spots", spots, "--out", out, expected=1)
+        self.assertIn("spots.csv line 4:", done.stderr)
+        self.assertFalse(out.exists())
+
+    def test_profile_and_heights_meet_spots(self):
+        spots = self.write_spots("line.csv", [(1, 4.5), (2.5, 5)], header="x,z")
+        lines = self.ask("profile", "--preset", "fbm/fig04b", "--level", "6", "--spots", spots).stdout.splitlines()[1:]
+        profile = {float(x): float(height) for x, height, _ in (line.split(",") for line in lines)}
+        self.assertEqual((profile[1.0], profile[2.5]), (4.5, 5))
+        spots = self.write_spots("plane.csv", [(3, 4, 11.5)])
+        lines = self.ask("heights", "--spots", spots, input="3,4\n").stdout.splitlines()
+        self.assertEqual(lines[1], "3,4,11.5")
+
+    def test_progress_of_a_preparation_as_json(self):
+        rows = [(7 * i, 5 * j, (i * j) % 13) for i in range(60) for j in range(60)]
+        spots = self.write_spots("spots.csv", rows)
+        out = self.folder / "a.f32"
+        done = self.ask("terrain", "--window", "0,0,9,9", "--spots", spots, "--out", out, "--progress", "json")
+        lines = [json.loads(line) for line in done.stderr.splitlines() if line.startswith("{")]
+        prepared = [line["prepared"] for line in lines if "prepared" in line]
+        self.assertEqual(prepared, sorted(prepared))
+        self.assertEqual(lines[-1]["samples"], 81)
+
     def test_pictures_of_every_kind(self):
         self.ask("terrain", "--preset", "demo/hills", "--out", self.folder / "a.r16")
         self.ask("profile", "--preset", "fbm/fig04c", "--out", self.folder / "a.csv")
@@ -262,6 +382,8 @@ class CliTest(unittest.TestCase):
             "block": [DEM, "--style", "perspective", "--water-level", "290", "--width", "400"],
             "plot": [self.folder / "a.csv", "--marks", "1,2"],
             "both": ["--side-by-side", DEM, DEM, "--width", "300"],
+            "four": ["--side-by-side", DEM, DEM, DEM, DEM, "--width", "200"],
+            "spots": ["--preset", "demo/spots", "--show-spots", "--local"],
             "line-preset": ["--preset", "fbm/fig04c", "--server", self.address],
             "field-preset": ["--preset", "fbm/fig06c", "--server", self.address],
         }

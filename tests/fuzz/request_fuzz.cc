@@ -1,9 +1,12 @@
-// Parse, validate and price a StreamTiles request, whatever the bytes: it never
-// crashes, and an error is always one that the API documents.
+// Parse, validate and price a StreamTiles and a StreamSurface request, and make
+// the terrain ready when that is cheap, whatever the bytes: it never crashes,
+// and an error is always one that the API documents. The same bytes are read as
+// both.
 //
 // Built as a libFuzzer target (TERRANE_FUZZERS, Clang; the bytes are a
 // serialized request or, when they start with '{', protobuf JSON) and, in every
-// build, as a test that replays tests/fuzz/corpus/request.
+// build, as a test that replays tests/fuzz/corpus: request holds seeds of
+// StreamTiles, surface of StreamSurface.
 #include <google/protobuf/util/json_util.h>
 
 #include <cstdint>
@@ -13,30 +16,75 @@
 
 #include "core/base/violations.h"
 #include "server/actor/actor.h"
+#include "terrane/v1/surface.pb.h"
 #include "terrane/v1/terrain.pb.h"
 
 namespace terrane::server {
 
-bool ParseRequest(const std::string& bytes, v1::StreamTilesRequest* request) {
+template <typename Request>
+bool ParseRequest(const std::string& bytes, Request* request) {
   if (!bytes.starts_with('{')) return request->ParseFromString(bytes);
   return google::protobuf::util::JsonStringToMessage(bytes, request).ok();
 }
 
-// False when the answer breaks the contract.
-bool EstimateKeepsContract(const std::string& bytes) {
+Actor& TheActor() {
   static const std::unique_ptr<Actor> actor = MakeActor({}, 1);
+  return *actor;
+}
+
+bool IsDocumented(const absl::Status& error) {
+  return absl::IsNotFound(error) || absl::IsResourceExhausted(error) ||
+         (absl::IsInvalidArgument(error) && !core::ViolationsOf(error).empty());
+}
+
+bool PreparationKeepsContract(const v1::TerrainChoice& terrain) {
+  v1::PrepareTerrainRequest request;
+  *request.mutable_terrain() = terrain;
+  double last = 0;
+  bool rises = true;
+  const auto prepared = TheActor().PrepareTerrain(
+      request,
+      [&](double fraction) {
+        rises = rises && fraction >= last && fraction <= 1;
+        last = fraction;
+      },
+      {});
+  if (!prepared.ok()) return IsDocumented(prepared.status());
+  return rises && prepared->memory_bytes() >= 0 &&
+         !prepared->recipe_hash().empty();
+}
+
+bool TerrainKeepsContract(const std::string& bytes) {
+  constexpr double kCheapSeconds = 0.05;
   v1::EstimateTilesRequest request;
   if (!ParseRequest(bytes, request.mutable_request())) return true;
-  const auto estimate = actor->EstimateTiles(request);
-  if (!estimate.ok()) {
-    return absl::IsNotFound(estimate.status()) ||
-           (absl::IsInvalidArgument(estimate.status()) &&
-            !core::ViolationsOf(estimate.status()).empty());
+  const auto estimate = TheActor().EstimateTiles(request);
+  if (!estimate.ok()) return IsDocumented(estimate.status());
+  if (estimate->tiles() < 0 || estimate->samples() < 0 ||
+      estimate->samples() > (std::int64_t{1} << 36) ||
+      estimate->generated_points() < estimate->samples() ||
+      !(estimate->cpu_seconds() >= 0) || !(estimate->prepare_seconds() >= 0) ||
+      estimate->prepare_bytes() < 0) {
+    return false;
   }
+  return estimate->prepare_seconds() > kCheapSeconds ||
+         PreparationKeepsContract(request.request().terrain());
+}
+
+bool SurfaceKeepsContract(const std::string& bytes) {
+  v1::EstimateSurfaceRequest request;
+  if (!ParseRequest(bytes, request.mutable_request())) return true;
+  const auto estimate = TheActor().EstimateSurface(request);
+  if (!estimate.ok()) return IsDocumented(estimate.status());
   return estimate->tiles() >= 0 && estimate->samples() >= 0 &&
          estimate->samples() <= (std::int64_t{1} << 36) &&
-         estimate->generated_points() >= estimate->samples() &&
+         estimate->generated_samples() >= estimate->samples() &&
          estimate->cpu_seconds() >= 0;
+}
+
+// False when an answer breaks the contract.
+bool RequestKeepsContract(const std::string& bytes) {
+  return TerrainKeepsContract(bytes) && SurfaceKeepsContract(bytes);
 }
 
 }  // namespace terrane::server
@@ -46,7 +94,7 @@ bool EstimateKeepsContract(const std::string& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  if (!terrane::server::EstimateKeepsContract(bytes)) std::abort();
+  if (!terrane::server::RequestKeepsContract(bytes)) std::abort();
   return 0;
 }
 
@@ -57,32 +105,49 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 namespace terrane::server {
 namespace {
 
-TEST(RequestFuzzTest, CorpusKeepsTheContract) {
-  int seeds = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(TERRANE_REQUEST_CORPUS)) {
-    std::ostringstream bytes;
-    bytes << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-    EXPECT_TRUE(EstimateKeepsContract(bytes.str())) << entry.path().filename();
-    ++seeds;
+std::vector<std::filesystem::path> Seeds(const std::string& folder) {
+  std::vector<std::filesystem::path> seeds;
+  for (const auto& entry : std::filesystem::directory_iterator(
+           std::filesystem::path(TERRANE_FUZZ_CORPUS) / folder)) {
+    seeds.push_back(entry.path());
   }
-  EXPECT_GE(seeds, 10);
+  return seeds;
+}
+
+std::string BytesOf(const std::filesystem::path& seed) {
+  std::ostringstream bytes;
+  bytes << std::ifstream(seed, std::ios::binary).rdbuf();
+  return bytes.str();
+}
+
+TEST(RequestFuzzTest, CorpusKeepsTheContract) {
+  for (const char* folder : {"request", "surface"}) {
+    const std::vector<std::filesystem::path> seeds = Seeds(folder);
+    for (const std::filesystem::path& seed : seeds) {
+      EXPECT_TRUE(RequestKeepsContract(BytesOf(seed))) << seed.filename();
+    }
+    EXPECT_GE(seeds.size(), 6u) << folder;
+  }
 }
 
 // The seeds are worth something only while they still parse.
-TEST(RequestFuzzTest, JsonSeedsAreRequests) {
-  for (const auto& entry :
-       std::filesystem::directory_iterator(TERRANE_REQUEST_CORPUS)) {
-    if (entry.path().extension() != ".json") continue;
-    std::ostringstream bytes;
-    bytes << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-    v1::StreamTilesRequest request;
-    EXPECT_TRUE(ParseRequest(bytes.str(), &request)) << entry.path().filename();
+template <typename Request>
+void ExpectJsonSeedsAre(const std::string& folder) {
+  for (const std::filesystem::path& seed : Seeds(folder)) {
+    if (seed.extension() != ".json") continue;
+    Request request;
+    EXPECT_TRUE(ParseRequest(BytesOf(seed), &request)) << seed.filename();
   }
+}
+
+TEST(RequestFuzzTest, JsonSeedsAreRequests) {
+  ExpectJsonSeedsAre<v1::StreamTilesRequest>("request");
+  ExpectJsonSeedsAre<v1::StreamSurfaceRequest>("surface");
 }
 
 }  // namespace

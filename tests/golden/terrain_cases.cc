@@ -254,6 +254,44 @@ void AddRefinements(CaseList* list) {
   list->Add("refinement_no_data", lake, whole);
 }
 
+void AddSpotHeights(CaseList* list) {
+  TerrainSpec spec;
+  spec.macro.base = 0.5;
+  spec.spots.level = 6;
+  spec.spots.points = {{{0.25, 0.5}, 1.75, 0},
+                       {{0.265625, 0.5}, 1.5, 0},
+                       {{-0.125, 0.75}, -0.5, 0},
+                       {{0.40625, 0.296875}, 0.25, 0.2}};
+  for (const FractalSource source :
+       {FractalSource::kMidpoint, FractalSource::kSuccessive,
+        FractalSource::kSubdivision}) {
+    spec.source = source;
+    list->Add("spots_" + Name(source), spec, kTile);
+    list->Add("spots_" + Name(source) + "_area", spec, kArea);
+  }
+  TerrainSpec line = spec;
+  line.dimensions = 1;
+  list->Add("spots_line", line, kLine);
+  TerrainSpec boltzmann = spec;
+  boltzmann.mapping = HeightMapping::kBoltzmann;
+  boltzmann.domain = kDomain;
+  boltzmann.spots.points[2].point = {2.984375, 0};
+  list->Add("spots_boltzmann_bounded", boltzmann, kWhole);
+  TerrainSpec river = spec;
+  river.spots.lines = {
+      {{{0.0, 0.25}, {0.3, 0.3}, {0.6, 0.8}}, {1, 0.5, -0.5}, 0, 0, true}};
+  river.discrete_constraints = {{{0.1, 0.8}, 4, {}}};
+  river.continuous_constraints.push_back({ConstraintQuantity::kRoughness,
+                                          0.95,
+                                          0,
+                                          0.3,
+                                          DistanceNorm::kL2,
+                                          ReachEdge::kSmooth,
+                                          SourceKind::kPoint,
+                                          {{0.25, 0.5}}});
+  list->Add("spots_river", river, kTile);
+}
+
 }  // namespace
 
 std::string GoldenCase::Parameters() const {
@@ -277,6 +315,7 @@ std::vector<GoldenCase> GoldenCases() {
   AddContinuousConstraints(&list);
   AddDiscreteConstraints(&list);
   AddRefinements(&list);
+  AddSpotHeights(&list);
   return list.Take();
 }
 

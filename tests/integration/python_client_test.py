@@ -3,7 +3,9 @@
 Usage: python_client_test.py TERRANE_SERVER STUBS [unittest arguments]
 """
 
+import hashlib
 import signal
+import struct
 import subprocess
 import sys
 import unittest
@@ -16,6 +18,8 @@ SERVER, STUBS = sys.argv[1:3]
 sys.path.insert(0, STUBS)
 
 from terrane.v1 import common_pb2, info_pb2, info_pb2_grpc, raster_pb2, raster_pb2_grpc  # noqa: E402
+from terrane.v1 import spot_table_pb2, spot_table_pb2_grpc  # noqa: E402
+from terrane.v1 import surface_pb2, surface_pb2_grpc  # noqa: E402
 from terrane.v1 import terrain_pb2, terrain_pb2_grpc, terrain_recipe_pb2  # noqa: E402
 
 FIELD = descriptor_pb2.FieldDescriptorProto
@@ -114,6 +118,22 @@ class PythonClientTest(unittest.TestCase):
         self.assertIn("level", violations)
         self.assertIn("window.width", violations)
 
+    def test_a_surface_comes_as_columns_that_numpy_reads(self):
+        request = surface_pb2.StreamSurfaceRequest(columns=90, rows=70, tile_size=40, uvs=True)
+        request.surface.preset = "surface/fig02"
+        stub = surface_pb2_grpc.SurfaceServiceStub(self.channel)
+        header, *messages = list(stub.StreamSurface(request))
+        self.assertEqual((header.header.tile_columns, header.header.tile_rows, len(messages)), (3, 2, 6))
+        normals = numpy.full((70, 90, 3), numpy.nan, "<f4")
+        uvs = numpy.full((70, 90, 2), numpy.nan, "<f4")
+        for message in messages:
+            tile, window = message.mesh_tile, message.mesh_tile.window
+            place = (slice(window.y, window.y + window.height), slice(window.x, window.x + window.width))
+            normals[place] = numpy.frombuffer(tile.normals, "<f4").reshape(window.height, window.width, 3)
+            uvs[place] = numpy.frombuffer(tile.uvs, "<f4").reshape(window.height, window.width, 2)
+        numpy.testing.assert_allclose(numpy.linalg.norm(normals, axis=2), 1, atol=1e-6)
+        numpy.testing.assert_array_equal(uvs[0, :, 0], (numpy.arange(90) / 89).astype("<f4"))
+
     def test_unknown_preset_is_a_google_rpc_error_info(self):
         request = terrain_pb2.GetPresetRequest(name="fbm/nothing")
         with self.assertRaises(grpc.RpcError) as raised:
@@ -136,6 +156,52 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual(header.header.window, common_pb2.Window(width=93, height=77))
         heights = numpy.frombuffer(tile.tile.data, "<f4").reshape(77, 93)
         numpy.testing.assert_array_equal(heights[::4, ::4], posts)
+
+    def upload_spots(self, *columns):
+        """Uploads columns of spots; their id."""
+        rows = len(columns[0])
+        data = b"".join(numpy.asarray(column, "<f8").tobytes() for column in columns)
+        digest = hashlib.sha256(b"terrane.spots.v1\0" + struct.pack("<QB", rows, len(columns) == 4) + data)
+        header = spot_table_pb2.SpotTableHeader(rows=rows, has_standard_errors=len(columns) == 4)
+        table_id = "sha256:" + digest.hexdigest()
+        parts = [spot_table_pb2.UploadSpotTableRequest(header=header, expected_table_id=table_id)]
+        parts += [spot_table_pb2.UploadSpotTableRequest(chunk=data[i:i + 777]) for i in range(0, len(data), 777)]
+        uploaded = spot_table_pb2_grpc.SpotTableServiceStub(self.channel).UploadSpotTable(iter(parts), timeout=60)
+        self.assertEqual(uploaded.table_id, table_id)
+        return table_id
+
+    def test_uploaded_spots_are_met(self):
+        random = numpy.random.default_rng(5)
+        place = random.choice(65 * 65, 300, replace=False)
+        rows, columns = place // 65, place % 65
+        heights = random.normal(100, 20, 300)
+        recipe = terrain_recipe_pb2.TerrainRecipe(seed=5, fidelity=400)
+        recipe.frame.spacing_x, recipe.frame.spacing_y = 8, -8
+        recipe.domain.cells_x = recipe.domain.cells_y = 8
+        recipe.spots.table_id = self.upload_spots(columns, -rows.astype(float), heights)
+        recipe.spots.level = 3
+        terrain = terrain_pb2.TerrainChoice(recipe=recipe)
+        messages = list(self.terrain.PrepareTerrain(terrain_pb2.PrepareTerrainRequest(terrain=terrain), timeout=60))
+        prepared = messages[-1].prepared
+        self.assertEqual((prepared.spots.spots, prepared.spots.level, prepared.spots.largest_move), (300, 3, 0))
+        request = terrain_pb2.StreamTilesRequest(terrain=terrain, level=3, tile_size=65)
+        header, tile = self.terrain.StreamTiles(request, timeout=60)
+        self.assertEqual(header.header.recipe_hash, prepared.recipe_hash)
+        self.assertEqual(header.header.spots, prepared.spots)
+        met = numpy.frombuffer(tile.tile.data, "<f4").reshape(65, 65)[rows, columns]
+        numpy.testing.assert_array_equal(met, heights.astype("<f4"))
+        # What the header resolved is the same terrain.
+        terrain.recipe.CopyFrom(header.header.recipe)
+        self.assertEqual(next(self.terrain.StreamTiles(request, timeout=60)).header, header.header)
+
+    def test_unknown_spot_table_is_a_google_rpc_error_info(self):
+        request = self.request(window=common_pb2.Window(width=4, height=4))
+        request.terrain.recipe.spots.table_id = "sha256:gone"
+        with self.assertRaises(grpc.RpcError) as raised:
+            list(self.terrain.StreamTiles(request, timeout=60))
+        self.assertEqual(raised.exception.code(), grpc.StatusCode.NOT_FOUND)
+        (info,) = details(raised.exception, "ErrorInfo")
+        self.assertEqual((info.reason, info.domain), ("SPOT_TABLE_NOT_FOUND", "terrane"))
 
     def test_memory_stays_flat_over_a_huge_stream(self):
         # 65,536 x 65,536 samples are 16 GiB. After the first few hundred tiles the

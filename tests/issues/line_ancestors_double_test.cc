@@ -2,8 +2,6 @@
 // doubled with each finer one: a short profile at level 30 took gigabytes.
 #include <gtest/gtest.h>
 
-#include <memory>
-
 #include "core/terrain/fractal_line.h"
 
 namespace terrane::core {
@@ -12,10 +10,8 @@ namespace {
 TEST(LineAncestorsDouble, AShortProfileStaysShortAtEveryLevel) {
   DeviationModel::Config model;
   model.dimensions = 1;
-  const FractalLine line(
-      {1, FractalSource::kSubdivision, {}}, DeviationModel(model),
-      std::make_shared<const DiscreteConstraints>(
-          *DiscreteConstraints::Create(TerrainSpec(), Frame())));
+  const FractalLine line({1, FractalSource::kSubdivision, {}},
+                         DeviationModel(model), {});
   for (const int level : {0, 1, 12, 24, kMaxLevel}) {
     FractalLine::Scratch scratch;
     EXPECT_EQ(line.Points(level, 1001, 50, {}, &scratch).size(), 50u);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <set>
 #include <sstream>
 #include <tuple>
 #include <utility>
@@ -37,9 +39,8 @@ class CaseMaker {
     }
     if (!case_.spec.refinement && !draw_.OneIn(4)) PickMacro();
     if (draw_.OneIn(2)) PickContinuousConstraints();
-    if (case_.spec.source == FractalSource::kMidpoint && draw_.OneIn(2)) {
-      PickDiscreteConstraints();
-    }
+    if (draw_.OneIn(2) && !case_.spec.refinement) PickDiscreteConstraints();
+    if (draw_.OneIn(2)) PickSpots();
     return std::move(case_);
   }
 
@@ -257,6 +258,73 @@ class CaseMaker {
           std::int64_t{0}, case_.request.level - draw_.Integer(-1, 6)));
       case_.spec.discrete_constraints.push_back(c);
     }
+    if (draw_.OneIn(3)) case_.spec.discrete_method = DiscreteMethod::kCondition;
+  }
+
+  // Up to 20 heights on lattice points around the window, each near enough to
+  // the macro shape for every mapping to reach it.
+  void PickSpots() {
+    TerrainSpec& spec = case_.spec;
+    constexpr double kFarthestSpot = 1e9;
+    bool faithful = spec.fidelity == 0;
+    for (const ContinuousConstraint& c : spec.continuous_constraints) {
+      faithful |= c.quantity == ConstraintQuantity::kFidelity;
+    }
+    if (faithful || std::fabs(near_.centre.x) > kFarthestSpot ||
+        std::fabs(near_.centre.y) > kFarthestSpot) {
+      return;
+    }
+    TerrainSpec bare = spec;
+    bare.discrete_constraints.clear();
+    const auto macro = *Terrain::Create(bare);
+    const Frame& frame = *macro->spec().frame;
+    // No larger than what the smoothest ground makes over such a distance: a
+    // hundred metres between neighbours of level 30 are rightly refused.
+    const double cells = near_.radius / std::fabs(frame.spacing_x);
+    const double deviation = std::min(1.0, std::sqrt(*macro->spec().fidelity)) *
+                             std::min(1.0, std::pow(cells, 0.99));
+    spec.spots.level = static_cast<int>(std::clamp<std::int64_t>(
+        case_.request.level + draw_.Integer(-3, 1), 1, 30));
+    for (DiscreteConstraint& c : spec.discrete_constraints) {
+      c.level = std::min(*c.level, *spec.spots.level - 1);  // never on a spot
+    }
+    std::set<std::pair<std::int64_t, std::int64_t>> taken;
+    TileScratch scratch;
+    for (std::int64_t k = draw_.Integer(1, 20); k > 0; --k) {
+      const Point2 place = InsideDomain(Place());
+      const auto index = [&](double at, double origin, double spacing) {
+        // Odd: not a post of a refined model, nor a point of another level.
+        return static_cast<std::int64_t>(std::floor(
+                   std::ldexp((at - origin) / spacing, *spec.spots.level) /
+                   2)) *
+                   2 +
+               1;
+      };
+      const std::int64_t x = index(place.x, frame.origin_x, frame.spacing_x);
+      const std::int64_t y =
+          plane() ? index(place.y, frame.origin_y, frame.spacing_y) : 0;
+      const TileRequest request = {
+          *spec.spots.level, Sampling::kPoint, {x, y, 1, 1}};
+      float height = 0;
+      // Farther out, world coordinates in double cannot name a lattice point.
+      constexpr std::int64_t kLargestIndex = std::int64_t{1} << 40;
+      if (std::abs(x) > kLargestIndex || std::abs(y) > kLargestIndex ||
+          !macro->CheckRequest(request).ok() || !taken.insert({x, y}).second ||
+          !macro->GenerateMacro(request, &scratch, {&height, 1}).ok() ||
+          std::isnan(height)) {
+        continue;
+      }
+      SpotHeight spot;
+      spot.point = {frame.origin_x +
+                        std::ldexp(static_cast<double>(x), -*spec.spots.level) *
+                            frame.spacing_x,
+                    frame.origin_y +
+                        std::ldexp(static_cast<double>(y), -*spec.spots.level) *
+                            frame.spacing_y};
+      spot.height = static_cast<double>(height) + deviation * draw_.Real(-1, 1);
+      if (draw_.OneIn(4)) spot.standard_error = deviation / 10;
+      spec.spots.points.push_back(spot);
+    }
   }
 
   Point2 InsideDomain(Point2 point) const {
@@ -322,7 +390,8 @@ std::string RandomCase::Text() const {
        << (spec.domain ? " bounded" : " endless")
        << (spec.refinement ? " refinement" : "") << " parts "
        << spec.macro.parts.size() << " discrete "
-       << spec.discrete_constraints.size() << " continuous "
+       << spec.discrete_constraints.size() << " spots "
+       << spec.spots.points.size() << " continuous "
        << spec.continuous_constraints.size() << ", level " << request.level
        << (request.sampling == Sampling::kPoint ? " POINT " : " AREA ")
        << request.window.width << " x " << request.window.height << " at ("

@@ -26,12 +26,13 @@ using ::testing::HasSubstr;
 class ActorTest : public ::testing::Test {
  protected:
   std::shared_ptr<const TileJob> Open(const std::string& json) {
-    auto job = actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json));
+    auto job = actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json), {});
     EXPECT_TRUE(job.ok()) << job.status();
     return job.ok() ? *std::move(job) : nullptr;
   }
   absl::Status OpenError(const std::string& json) {
-    return actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json)).status();
+    return actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json), {})
+        .status();
   }
   v1::HeightTile Make(const TileJob& job, std::int64_t index) {
     v1::HeightTile tile;
@@ -47,7 +48,7 @@ class ActorTest : public ::testing::Test {
   }
   // Uploads a rough 16 x 13 model with posts 30 apart; its id.
   std::string UploadModel() {
-    const auto upload = actor_->BeginUpload();
+    const auto upload = actor_->BeginRasterUpload();
     EXPECT_TRUE(upload
                     ->Add(FromJson<v1::UploadRasterRequest>(
                         R"({"header": {"width": "16", "height": "13", "frame":
@@ -164,7 +165,7 @@ TEST_F(ActorTest, RecipeAndPresetOfTheSameTerrainHashAlike) {
       R"({"window": {"width": 1, "height": 1}})");
   *by_recipe.mutable_terrain()->mutable_recipe() =
       FindPreset("demo/hills").value()->recipe();
-  const auto from_recipe = actor_->OpenTiles(by_recipe);
+  const auto from_recipe = actor_->OpenTiles(by_recipe, {});
   ASSERT_TRUE(from_recipe.ok());
   const auto from_preset = Open(R"({"terrain": {"preset": "demo/hills"},
     "window": {"width": 1, "height": 1}})");
@@ -190,7 +191,7 @@ TEST_F(ActorTest, ResolvedRecipeGivesTheSameBytes) {
   v1::StreamTilesRequest again;
   *again.mutable_terrain()->mutable_recipe() = job->header().recipe();
   again.set_level(2);
-  const auto resolved = actor_->OpenTiles(again);
+  const auto resolved = actor_->OpenTiles(again, {});
   ASSERT_TRUE(resolved.ok()) << resolved.status();
   EXPECT_EQ((*resolved)->header().SerializeAsString(),
             job->header().SerializeAsString());
@@ -218,6 +219,13 @@ TEST_F(ActorTest, UnknownNamesHaveAReason) {
   EXPECT_EQ(ReasonOf(raster)->reason, kRasterNotFound);
   EXPECT_EQ(ReasonOf(raster)->value, "sha256:0");
   EXPECT_EQ(actor_->GetRaster({}).status().code(), absl::StatusCode::kNotFound);
+  const absl::Status table =
+      OpenError(R"({"terrain": {"recipe": {"spots": {"tableId": "sha256:1"}}},
+        "window": {"width": 1, "height": 1}})");
+  EXPECT_EQ(ReasonOf(table)->reason, kSpotTableNotFound);
+  EXPECT_EQ(ReasonOf(table)->key, "table_id");
+  EXPECT_EQ(actor_->GetSpotTable({}).status().code(),
+            absl::StatusCode::kNotFound);
 }
 
 TEST_F(ActorTest, RecipeAndRequestViolationsComeTogether) {
@@ -239,7 +247,7 @@ TEST_F(ActorTest, RecipeAndRequestViolationsComeTogether) {
 
 // Some faults show only when the terrain is made.
 TEST_F(ActorTest, ViolationsOfPreparationHaveTheRequestsPath) {
-  const auto upload = actor_->BeginUpload();
+  const auto upload = actor_->BeginRasterUpload();
   ASSERT_TRUE(upload
                   ->Add(FromJson<v1::UploadRasterRequest>(
                       R"({"header": {"width": "2", "height": "2"}})"))
@@ -263,7 +271,7 @@ TEST_F(ActorTest, EstimateIsWhatTheStreamSends) {
           "firstTile": 5, "window": {"width": 100, "height": 70}})");
   const auto estimate = actor_->EstimateTiles(request);
   ASSERT_TRUE(estimate.ok()) << estimate.status();
-  const auto job = *actor_->OpenTiles(request.request());
+  const auto job = *actor_->OpenTiles(request.request(), {});
   std::int64_t bytes = 0;
   for (std::int64_t i = job->first(); i < job->total(); ++i) {
     bytes += static_cast<std::int64_t>(Make(*job, i).data().size());
@@ -327,12 +335,113 @@ TEST_F(ActorTest, CancelledWorkSaysSo) {
             absl::StatusCode::kOutOfRange);
 }
 
+// 9 x 9 posts 1 apart; level 3 has 65 x 65 samples 1/8 apart.
+constexpr char kSpots[] = R"("domain": {"cellsX": "8", "cellsY": "8"},
+  "spots": {"level": 3, "points": [{"x": 2, "y": 3, "height": 40.1},
+    {"x": 5.125, "y": 7.875, "height": -7}, {"x": 6.06, "y": 1, "height": 9}]})";
+
+TEST_F(ActorTest, SpotsAreMetAndReported) {
+  const auto job = Open(std::string(R"({"terrain": {"recipe": {)") + kSpots +
+                        R"(}}, "level": 3})");
+  ASSERT_NE(job, nullptr);
+  EXPECT_EQ(job->header().spots().spots(), 3);
+  EXPECT_EQ(job->header().spots().level(), 3);
+  EXPECT_NEAR(job->header().spots().largest_move(), 0.06, 1e-12);
+  const std::vector<float> heights = Heights(Make(*job, 0));
+  EXPECT_EQ(heights[24 * 65 + 16], 40.1F);
+  EXPECT_EQ(heights[63 * 65 + 41], -7.0F);
+  EXPECT_EQ(heights[8 * 65 + 48], 9.0F);
+}
+
+TEST_F(ActorTest, ResolvedSpotsGiveTheSameBytes) {
+  const auto job = Open(R"({"terrain": {"recipe": {"spots": {"points":
+    [{"x": 2, "y": 3.25, "height": 4}]}}}, "level": 4,
+    "window": {"width": 70, "height": 70}})");
+  ASSERT_NE(job, nullptr);
+  // The coarsest level that holds the spot.
+  EXPECT_EQ(job->header().recipe().spots().level(), 2);
+  v1::StreamTilesRequest again = FromJson<v1::StreamTilesRequest>(
+      R"({"level": 4, "window": {"width": 70, "height": 70}})");
+  *again.mutable_terrain()->mutable_recipe() = job->header().recipe();
+  const auto resolved = actor_->OpenTiles(again, {});
+  ASSERT_TRUE(resolved.ok()) << resolved.status();
+  EXPECT_EQ((*resolved)->header().SerializeAsString(),
+            job->header().SerializeAsString());
+  EXPECT_EQ(Make(**resolved, 0).data(), Make(*job, 0).data());
+}
+
+TEST_F(ActorTest, PreparationTellsWhatItMade) {
+  const auto request = FromJson<v1::PrepareTerrainRequest>(
+      std::string(R"({"terrain": {"recipe": {)") + kSpots + "}}}");
+  double last = 0;
+  const auto prepared = actor_->PrepareTerrain(request,
+                                               [&](double fraction) {
+                                                 EXPECT_GE(fraction, last);
+                                                 last = fraction;
+                                               },
+                                               {});
+  ASSERT_TRUE(prepared.ok()) << prepared.status();
+  EXPECT_GT(prepared->memory_bytes(), 0);
+  EXPECT_EQ(prepared->revision(), core::kTerrainRevision);
+  v1::StreamTilesRequest tiles;
+  *tiles.mutable_terrain() = request.terrain();
+  const auto job = *actor_->OpenTiles(tiles, {});
+  EXPECT_EQ(job->header().recipe_hash(), prepared->recipe_hash());
+  EXPECT_EQ(job->header().recipe().SerializeAsString(),
+            prepared->recipe().SerializeAsString());
+  EXPECT_EQ(job->header().spots().SerializeAsString(),
+            prepared->spots().SerializeAsString());
+}
+
+TEST_F(ActorTest, PreparationThatTakesTooMuchIsRefusedBeforeWork) {
+  Limits limits;
+  limits.prepared_bytes = 100;
+  const auto actor = MakeActor(limits, 1);
+  const auto request = FromJson<v1::PrepareTerrainRequest>(
+      std::string(R"({"terrain": {"recipe": {)") + kSpots + "}}}");
+  const absl::Status refused = actor->PrepareTerrain(request, {}, {}).status();
+  EXPECT_EQ(refused.code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_THAT(std::string(refused.message()), HasSubstr("gives 100"));
+  // The price is answered all the same.
+  v1::EstimateTilesRequest estimate;
+  *estimate.mutable_request()->mutable_terrain() = request.terrain();
+  const auto price = actor->EstimateTiles(estimate);
+  ASSERT_TRUE(price.ok()) << price.status();
+  EXPECT_GT(price->prepare_bytes(), 100);
+  EXPECT_GT(price->prepare_seconds(), 0);
+}
+
+TEST_F(ActorTest, SpotsThatContradictAreNamedByTheRequestsPath) {
+  const auto violations = core::ViolationsOf(
+      OpenError(R"({"terrain": {"recipe": {"spots": {"level": 0, "points":
+        [{"x": 2.1, "y": 3, "height": 4}, {"x": 1.9, "y": 3, "height": 5}]}}},
+        "window": {"width": 4, "height": 4}})"));
+  ASSERT_FALSE(violations.empty());
+  EXPECT_EQ(violations[0].field, "terrain.recipe.spots.points[1]");
+}
+
+TEST_F(ActorTest, PreparationEndsWhenItsCallerDoes) {
+  std::stop_source stop;
+  stop.request_stop();
+  const auto request = FromJson<v1::PrepareTerrainRequest>(
+      std::string(R"({"terrain": {"recipe": {)") + kSpots + "}}}");
+  EXPECT_TRUE(absl::IsCancelled(
+      actor_->PrepareTerrain(request, {}, stop.get_token()).status()));
+  v1::StreamTilesRequest tiles;
+  *tiles.mutable_terrain() = request.terrain();
+  EXPECT_TRUE(
+      absl::IsCancelled(actor_->OpenTiles(tiles, stop.get_token()).status()));
+}
+
 TEST_F(ActorTest, InfoNamesLimitsAndPresets) {
   const v1::GetServerInfoResponse info = actor_->GetServerInfo();
   EXPECT_EQ(info.workers(), 3);
   EXPECT_EQ(info.terrain_revision(), core::kTerrainRevision);
   EXPECT_EQ(info.limits().max_level(), Limits().max_level);
   EXPECT_EQ(info.limits().raster_store_bytes(), Limits().raster_store_bytes);
+  EXPECT_EQ(info.limits().max_spots(), Limits().recipe.max_spots);
+  EXPECT_EQ(info.limits().max_inline_spots(), Limits().recipe.max_inline_spots);
+  EXPECT_EQ(info.limits().prepared_bytes(), Limits().prepared_bytes);
   std::vector<std::string> names;
   for (const v1::PresetSummary& preset : info.presets()) {
     names.push_back(preset.name());
@@ -358,7 +467,7 @@ TEST_F(ActorTest, EveryPresetCanBeGenerated) {
     *request.mutable_terrain() = choice;
     request.mutable_window()->set_width(2);
     request.mutable_window()->set_height(2);
-    const auto job = actor_->OpenTiles(request);
+    const auto job = actor_->OpenTiles(request, {});
     ASSERT_TRUE(job.ok()) << name << ": " << job.status();
     Make(**job, 0);
   }

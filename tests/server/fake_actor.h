@@ -21,9 +21,25 @@ struct FakeTiles {
   std::size_t tile_bytes = 1024;
   // A tile that is not let through is at work until its stop token is set.
   std::atomic<bool> hold = false;
+  // The same of the preparation before them.
+  std::atomic<bool> hold_preparation = false;
   std::atomic<std::int64_t> started = 0;
   std::atomic<std::int64_t> stopped = 0;
 };
+
+// What holds something back: until `hold` is false, or the stop token is set.
+inline absl::Status HoldBack(const std::atomic<bool>& hold,
+                             const std::stop_token& stop, FakeTiles* tiles) {
+  ++tiles->started;
+  while (hold) {
+    if (stop.stop_requested()) {
+      ++tiles->stopped;
+      return absl::CancelledError("stopped");
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  return absl::OkStatus();
+}
 
 // The content of a tile, for comparing.
 inline std::string FakeTileData(std::int64_t index, std::size_t size) {
@@ -48,14 +64,8 @@ class FakeJob : public TileJob {
   absl::Status MakeTile(std::int64_t index, std::stop_token stop,
                         core::TileScratch*,
                         v1::HeightTile* tile) const override {
-    ++tiles_->started;
-    while (tiles_->hold) {
-      if (stop.stop_requested()) {
-        ++tiles_->stopped;
-        return absl::CancelledError("stopped");
-      }
-      std::this_thread::sleep_for(std::chrono::microseconds(100));
-    }
+    const absl::Status status = HoldBack(tiles_->hold, stop, tiles_);
+    if (!status.ok()) return status;
     tile->set_index(index);
     tile->set_total(total_);
     *tile->mutable_data() = FakeTileData(index, tiles_->tile_bytes);
@@ -77,16 +87,29 @@ class FakeActor : public Actor {
   FakeTiles& tiles() { return tiles_; }
 
   absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
-      const v1::StreamTilesRequest& request) override {
+      const v1::StreamTilesRequest& request, std::stop_token stop) override {
+    if (tiles_.hold_preparation) {
+      const absl::Status status =
+          HoldBack(tiles_.hold_preparation, stop, &tiles_);
+      if (!status.ok()) return status;
+    }
     return std::make_shared<FakeJob>(request.tile_size(), request.first_tile(),
                                      &tiles_);
   }
+  absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(
+      const v1::PrepareTerrainRequest&, const OnProgress& on_progress,
+      std::stop_token stop) override {
+    on_progress(0.25);
+    const absl::Status status =
+        HoldBack(tiles_.hold_preparation, stop, &tiles_);
+    if (!status.ok()) return status;
+    v1::PreparedTerrain prepared;
+    prepared.set_recipe_hash("sha256:fake");
+    return prepared;
+  }
   absl::StatusOr<v1::GetProfileResponse> GetProfile(
       const v1::GetProfileRequest&, std::stop_token stop) override {
-    v1::HeightTile unused;
-    core::TileScratch scratch;
-    const absl::Status status =
-        FakeJob(1, 0, &tiles_).MakeTile(0, std::move(stop), &scratch, &unused);
+    const absl::Status status = HoldBack(tiles_.hold, stop, &tiles_);
     if (!status.ok()) return status;
     return v1::GetProfileResponse();
   }
@@ -103,10 +126,29 @@ class FakeActor : public Actor {
     return absl::InternalError("cannot read /etc/secret");
   }
   v1::GetServerInfoResponse GetServerInfo() override { return {}; }
-  std::unique_ptr<RasterUpload> BeginUpload() override { return nullptr; }
+  absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
+      const v1::StreamSurfaceRequest&) override {
+    return absl::UnimplementedError("no surfaces here");
+  }
+  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
+      const v1::EstimateSurfaceRequest&) override {
+    return v1::EstimateSurfaceResponse();
+  }
+  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
+      const v1::GetSurfacePresetRequest&) override {
+    return v1::GetSurfacePresetResponse();
+  }
+  std::unique_ptr<RasterUpload> BeginRasterUpload() override { return nullptr; }
   absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest&) override {
     return v1::GetRasterResponse();
+  }
+  std::unique_ptr<SpotTableUpload> BeginSpotTableUpload() override {
+    return nullptr;
+  }
+  absl::StatusOr<v1::GetSpotTableResponse> GetSpotTable(
+      const v1::GetSpotTableRequest&) override {
+    return v1::GetSpotTableResponse();
   }
 
  private:

@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "core/terrain/terrain.h"
-#include "server/actor/embedded_presets.h"
 #include "server/actor/limits.h"
 #include "server/convert/terrain_convert.h"
 
@@ -25,9 +25,13 @@ using ::testing::Not;
 using ::testing::Truly;
 
 // No preset names a raster: it would have to be uploaded first.
-class NoRasters : public RasterSource {
+// A preset brings all that it needs.
+class Nothing : public RasterSource, public SpotTableSource {
  public:
   PlacedRaster Find(const std::string&) override { return {}; }
+  std::shared_ptr<const SpotTable> FindTable(const std::string&) override {
+    return nullptr;
+  }
 };
 
 // Says whether a world point belongs to the part of a figure in question.
@@ -87,12 +91,14 @@ class Figure {
  private:
   void Generate(const v1::TerrainPreset& preset) {
     preset_ = preset;
-    NoRasters rasters;
+    Nothing nothing;
     core::Violations violations;
-    const ReadRecipe read = ReadTerrainRecipe(
-        preset.recipe(), &rasters, Limits().recipe, "recipe.", &violations);
+    const ReadRecipe read =
+        ReadTerrainRecipe(preset.recipe(), {&nothing, &nothing},
+                          Limits().recipe, "recipe.", &violations);
     ASSERT_TRUE(violations.empty()) << violations.ToStatus();
     ASSERT_THAT(read.missing_raster, IsEmpty());
+    ASSERT_THAT(read.missing_spot_table, IsEmpty());
     const auto terrain = core::Terrain::Create(read.spec);
     ASSERT_TRUE(terrain.ok()) << terrain.status();
 
@@ -168,8 +174,8 @@ Place WithinCircle(double radius) {
 
 std::vector<std::string> Names() {
   std::vector<std::string> names;
-  for (const EmbeddedPreset& preset : EmbeddedPresets()) {
-    names.push_back(preset.name);
+  for (const auto& [name, preset] : Presets()) {
+    names.push_back(name);
   }
   return names;
 }
@@ -317,6 +323,30 @@ TEST(PaperFiguresTest, Figure7dCorrodesTheTopThat7cKeeps) {
   // Pits below the top as it was made: in d alone.
   EXPECT_EQ(c.ShareBelow(top), 0);
   EXPECT_GT(d.ShareBelow(top), 0.02);
+}
+
+TEST(DemoTest, SpotsAreMetAndTheRiverFalls) {
+  const Figure figure("demo/spots");
+  const v1::SpotHeights& spots = figure.preset().recipe().spots();
+  ASSERT_EQ(spots.points_size(), 5);
+  for (const v1::SpotHeight& point : spots.points()) {
+    EXPECT_EQ(figure.heights()[figure.At(point.x(), point.y())],
+              static_cast<float>(point.height()))
+        << point.ShortDebugString();
+  }
+  ASSERT_EQ(spots.lines_size(), 1);
+  const v1::SpotLine& river = spots.lines(0);
+  EXPECT_TRUE(river.only_falls());
+  // The first and the last vertex lie outside the view.
+  float before = std::numeric_limits<float>::infinity();
+  for (int i = 1; i + 1 < river.vertices_size(); ++i) {
+    const v1::Point& vertex = river.vertices(i);
+    const std::size_t at = figure.At(vertex.x(), vertex.y());
+    // Samples stand at every 32 m along the line, not at its vertices.
+    EXPECT_NEAR(figure.heights()[at], figure.macro()[at], 5);
+    EXPECT_LT(figure.heights()[at], before) << vertex.ShortDebugString();
+    before = figure.heights()[at];
+  }
 }
 
 }  // namespace

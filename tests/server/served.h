@@ -15,6 +15,8 @@
 #include "server/service/server.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
+#include "terrane/v1/spot_table.grpc.pb.h"
+#include "terrane/v1/surface.grpc.pb.h"
 #include "terrane/v1/terrain.grpc.pb.h"
 
 namespace terrane::server {
@@ -34,7 +36,9 @@ class Served {
         "127.0.0.1:" + std::to_string(server_->port()),
         grpc::InsecureChannelCredentials(), ClientArguments());
     terrain = v1::TerrainService::NewStub(channel_);
+    surface = v1::SurfaceService::NewStub(channel_);
     raster = v1::RasterService::NewStub(channel_);
+    spot_table = v1::SpotTableService::NewStub(channel_);
     info = v1::InfoService::NewStub(channel_);
   }
 
@@ -47,7 +51,9 @@ class Served {
   }
 
   std::unique_ptr<v1::TerrainService::Stub> terrain;
+  std::unique_ptr<v1::SurfaceService::Stub> surface;
   std::unique_ptr<v1::RasterService::Stub> raster;
+  std::unique_ptr<v1::SpotTableService::Stub> spot_table;
   std::unique_ptr<v1::InfoService::Stub> info;
 
  private:

@@ -49,7 +49,8 @@ TEST_F(ServedTest, MessagesAreTheActors) {
   grpc::Status status;
   const auto messages = Stream(json, &status);
   ASSERT_TRUE(status.ok()) << status.error_message();
-  const auto job = *actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json));
+  const auto job =
+      *actor_->OpenTiles(FromJson<v1::StreamTilesRequest>(json), {});
   ASSERT_EQ(messages.size(), static_cast<std::size_t>(job->total()) + 1);
   using google::protobuf::util::MessageDifferencer;
   EXPECT_TRUE(MessageDifferencer::Equals(messages[0].header(), job->header()));
@@ -101,6 +102,32 @@ TEST_F(ServedTest, UnknownNamesComeAsErrorInfo) {
   EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
   ASSERT_TRUE(info.ParseFromString(Details(status).details(0).value()));
   EXPECT_EQ(info.reason(), "RASTER_NOT_FOUND");
+  Stream(R"({"terrain": {"recipe": {"spots": {"tableId": "sha256:1"}}}})",
+         &status);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
+  ASSERT_TRUE(info.ParseFromString(Details(status).details(0).value()));
+  EXPECT_EQ(info.reason(), "SPOT_TABLE_NOT_FOUND");
+  EXPECT_EQ(info.metadata().at("table_id"), "sha256:1");
+}
+
+TEST_F(ServedTest, SpotTableIsUploadedInChunks) {
+  grpc::ClientContext context;
+  v1::UploadSpotTableResponse response;
+  const auto writer = served_.spot_table->UploadSpotTable(&context, &response);
+  ASSERT_TRUE(writer->Write(
+      FromJson<v1::UploadSpotTableRequest>(R"({"header": {"rows": "1000"}})")));
+  v1::UploadSpotTableRequest chunk;
+  chunk.set_chunk(std::string(6'000, '\0'));
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(writer->Write(chunk));
+  writer->WritesDone();
+  ASSERT_TRUE(writer->Finish().ok());
+  grpc::ClientContext get_context;
+  v1::GetSpotTableRequest get;
+  get.set_table_id(response.table_id());
+  v1::GetSpotTableResponse kept;
+  ASSERT_TRUE(served_.spot_table->GetSpotTable(&get_context, get, &kept).ok());
+  EXPECT_EQ(kept.table_id(), response.table_id());
+  EXPECT_EQ(kept.header().rows(), 1000);
 }
 
 TEST_F(ServedTest, RasterIsUploadedInChunks) {

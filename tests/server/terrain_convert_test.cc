@@ -39,14 +39,30 @@ class OneRaster : public RasterSource {
   std::shared_ptr<const core::Raster> raster_;
 };
 
+// Knows one table, "sha256:table".
+class OneTable : public SpotTableSource {
+ public:
+  std::shared_ptr<const SpotTable> FindTable(
+      const std::string& table_id) override {
+    return table_id == "sha256:table" ? table_ : nullptr;
+  }
+
+ private:
+  const std::shared_ptr<const SpotTable> table_ =
+      std::make_shared<const SpotTable>(
+          SpotTable{{{7, 8}, 9, 0}, {{1, 2}, 3, 0.5}});
+};
+
 class TerrainConvertTest : public ::testing::Test {
  protected:
   ReadRecipe Read(const std::string& json) {
-    return ReadTerrainRecipe(FromJson<v1::TerrainRecipe>(json), &rasters_, {},
+    return ReadTerrainRecipe(FromJson<v1::TerrainRecipe>(json), sources_, {},
                              "terrain.recipe.", &violations_);
   }
 
   OneRaster rasters_;
+  OneTable tables_;
+  const ContentSources sources_{&rasters_, &tables_};
   core::Violations violations_;
 };
 
@@ -108,6 +124,83 @@ TEST_F(TerrainConvertTest, RoundTripOfAResolvedRecipeIsTheIdentity) {
   EXPECT_EQ(RecipeHash(recipe), RecipeHash(written));
 }
 
+constexpr char kResolvedSpots[] = R"({
+  "dimensions": 2, "source": "FRACTAL_SOURCE_SUCCESSIVE",
+  "mapping": "HEIGHT_MAPPING_LINEAR", "macro": {},
+  "discreteMethod": "DISCRETE_METHOD_CONDITION",
+  "spots": {
+    "points": [{"x": 1, "y": 2, "height": 3},
+               {"x": -4, "y": 5.5, "height": -6, "standardError": 0.25}],
+    "tableId": "sha256:table",
+    "lines": [
+      {"vertices": [{"x": 0, "y": 0}, {"x": 4, "y": 1}], "heights": [9, 2],
+       "spacing": 0.5, "standardError": 0.1, "onlyFalls": true},
+      {"vertices": [{"x": 1, "y": 1}, {"x": 2, "y": 7}, {"x": 3, "y": 3}]}],
+    "level": 6}})";
+
+TEST_F(TerrainConvertTest, SpotHeightsAreRead) {
+  const ReadRecipe read = Read(kResolvedSpots);
+  const core::SpotHeights& spots = read.spec.spots;
+  EXPECT_THAT(spots.points, ElementsAre(core::SpotHeight{{1, 2}, 3, 0},
+                                        core::SpotHeight{{-4, 5.5}, -6, 0.25}));
+  ASSERT_NE(spots.table, nullptr);
+  EXPECT_THAT(*spots.table, SizeIs(2));
+  EXPECT_EQ(read.spot_table_id, "sha256:table");
+  ASSERT_THAT(spots.lines, SizeIs(2));
+  EXPECT_THAT(spots.lines[0].vertices,
+              ElementsAre(core::Point2{0, 0}, core::Point2{4, 1}));
+  EXPECT_THAT(spots.lines[0].heights, ElementsAre(9, 2));
+  EXPECT_EQ(spots.lines[0].spacing, 0.5);
+  EXPECT_EQ(spots.lines[0].standard_error, 0.1);
+  EXPECT_TRUE(spots.lines[0].only_falls);
+  EXPECT_THAT(spots.lines[1].heights, IsEmpty());
+  EXPECT_EQ(spots.level, 6);
+  EXPECT_EQ(read.spec.discrete_method, core::DiscreteMethod::kCondition);
+}
+
+TEST_F(TerrainConvertTest, RoundTripOfResolvedSpotsIsTheIdentity) {
+  const auto recipe = FromJson<v1::TerrainRecipe>(kResolvedSpots);
+  const ReadRecipe read = Read(kResolvedSpots);
+  v1::TerrainRecipe written = WriteTerrainRecipe(read.spec, read);
+  google::protobuf::util::MessageDifferencer differencer;
+  std::string difference;
+  differencer.ReportDifferencesToString(&difference);
+  EXPECT_TRUE(differencer.Compare(recipe, written)) << difference;
+  EXPECT_EQ(RecipeHash(recipe), RecipeHash(written));
+}
+
+TEST_F(TerrainConvertTest, RecipeWithoutSpotsSaysNothingOfThem) {
+  const ReadRecipe read = Read(R"({"spots": {"level": 3}})");
+  const v1::TerrainRecipe written = WriteTerrainRecipe(read.spec, read);
+  EXPECT_FALSE(written.has_spots());
+  EXPECT_EQ(written.discrete_method(), v1::DISCRETE_METHOD_UNSPECIFIED);
+}
+
+TEST_F(TerrainConvertTest, MissingSpotTableIsNamedAndNotAViolation) {
+  const ReadRecipe read = Read(R"({"spots": {"tableId": "sha256:gone"}})");
+  EXPECT_THAT(violations_.kept(), IsEmpty());
+  EXPECT_EQ(read.missing_spot_table, "sha256:gone");
+  EXPECT_FALSE(read.complete());
+}
+
+TEST_F(TerrainConvertTest, TooManyInlineSpotsAreNotEvenConverted) {
+  v1::TerrainRecipe recipe;
+  for (int i = 0; i < 10'001; ++i) {
+    recipe.mutable_spots()->add_points();
+    recipe.mutable_spots()->add_lines();
+  }
+  const ReadRecipe read =
+      ReadTerrainRecipe(recipe, sources_, {}, "", &violations_);
+  EXPECT_THAT(violations_.kept(),
+              ElementsAre(core::Violation{"spots.points",
+                                          "must have at most 10000 elements, "
+                                          "got 10001"},
+                          core::Violation{"spots.lines",
+                                          "must have at most 10000 elements, "
+                                          "got 10001"}));
+  EXPECT_TRUE(read.spec.spots.empty());
+}
+
 TEST_F(TerrainConvertTest, UnsetFieldsTakeTheDocumentedDefaults) {
   const ReadRecipe read = Read(R"({
     "frame": {"originX": 3},
@@ -141,7 +234,7 @@ TEST_F(TerrainConvertTest, UnsetFieldsTakeTheDocumentedDefaults) {
 }
 
 TEST_F(TerrainConvertTest, UnknownEnumNumbersAreViolationsWithTheirValue) {
-  Read(R"({"source": 17, "mapping": 9,
+  Read(R"({"source": 17, "mapping": 9, "discreteMethod": 3,
     "macro": {"parts": [{"combine": 8, "plane": {}},
                         {"profile": {"heights": [1, 2], "stepX": 1,
                                      "interpolation": 7}}]},
@@ -156,6 +249,7 @@ TEST_F(TerrainConvertTest, UnknownEnumNumbersAreViolationsWithTheirValue) {
               ElementsAre(unknown("source", "17"), unknown("mapping", "9"),
                           unknown("macro.parts[0].combine", "8"),
                           unknown("macro.parts[1].profile.interpolation", "7"),
+                          unknown("discrete_method", "3"),
                           unknown("continuous_constraints[0].quantity", "6"),
                           unknown("continuous_constraints[0].norm", "5"),
                           unknown("continuous_constraints[0].edge", "4")));
@@ -185,7 +279,7 @@ TEST_F(TerrainConvertTest, TooManyElementsAreNotEvenConverted) {
     recipe.add_continuous_constraints();
   }
   const ReadRecipe read =
-      ReadTerrainRecipe(recipe, &rasters_, {}, "", &violations_);
+      ReadTerrainRecipe(recipe, sources_, {}, "", &violations_);
   EXPECT_THAT(
       violations_.kept(),
       ElementsAre(

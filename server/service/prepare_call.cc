@@ -1,0 +1,116 @@
+#include "server/service/prepare_call.h"
+
+#include <utility>
+
+#include "server/service/status.h"
+
+namespace terrane::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kProgressInterval{500};
+
+}  // namespace
+
+grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* PrepareCall::Start(
+    const ServiceParts& parts, grpc::CallbackServerContext* context,
+    const v1::PrepareTerrainRequest* request) {
+  std::shared_ptr<PrepareCall> call(new PrepareCall(parts, context, request));
+  call->self_ = call;
+  {
+    std::lock_guard lock(call->mutex_);
+    call->SetTimer();
+  }
+  parts.workers->Submit([call](core::TileScratch*) { call->Run(); });
+  return call.get();
+}
+
+void PrepareCall::Run() {
+  const Clock::time_point start = Clock::now();
+  {
+    std::lock_guard lock(mutex_);
+    if (outcome_.has_value()) return;  // cancelled while it was queued
+    running_ = true;
+  }
+  absl::StatusOr<v1::PreparedTerrain> outcome = parts_.actor->PrepareTerrain(
+      *request_,
+      [this](double fraction) {
+        std::lock_guard lock(mutex_);
+        fraction_ = fraction;
+      },
+      stop_.get_token());
+  // The core knows that it was stopped, the call knows why.
+  if (absl::IsCancelled(outcome.status())) outcome = CancelStatus(*context_);
+
+  std::unique_lock lock(mutex_);
+  running_ = false;
+  record_.queued = start - begin_;
+  record_.generated = Clock::now() - start;
+  if (outcome.ok()) record_.recipe_hash = outcome->recipe_hash();
+  outcome_ = std::move(outcome);
+  EndIfReady(std::move(lock));
+}
+
+void PrepareCall::SetTimer() {
+  // A new alarm each time: setting one again inside its own callback would
+  // destroy what is being run.
+  timer_.emplace();
+  timer_->Set(std::chrono::system_clock::now() + kProgressInterval,
+              [call = self_](bool expired) {
+                if (expired) call->OnTimer();
+              });
+}
+
+void PrepareCall::OnTimer() {
+  std::unique_lock lock(mutex_);
+  if (outcome_.has_value()) return;
+  SetTimer();
+  if (writing_) return;
+  writing_ = true;
+  message_.mutable_progress()->set_fraction(fraction_);
+  // Once unlocked the call can end at any time, and then lets go of itself.
+  const std::shared_ptr<PrepareCall> keep = self_;
+  lock.unlock();
+  StartWrite(&message_);
+}
+
+void PrepareCall::EndIfReady(std::unique_lock<std::mutex> lock) {
+  if (finished_ || writing_ || running_ || !outcome_.has_value()) return;
+  finished_ = true;
+  record_.status = outcome_->status();
+  const grpc::Status status = ToGrpcStatus(record_.status, record_.request_id);
+  const std::shared_ptr<PrepareCall> keep = self_;
+  lock.unlock();
+  // Nobody sets the timer any more. It goes now: it shares this call, which
+  // holds it.
+  timer_.reset();
+  if (status.ok()) {
+    *message_.mutable_prepared() = **std::move(outcome_);
+    StartWriteAndFinish(&message_, grpc::WriteOptions(), status);
+  } else {
+    Finish(status);
+  }
+}
+
+void PrepareCall::OnWriteDone(bool ok) {
+  std::unique_lock lock(mutex_);
+  writing_ = false;
+  // The reader has gone; OnCancel comes, too.
+  if (!ok) stop_.request_stop();
+  EndIfReady(std::move(lock));
+}
+
+void PrepareCall::OnCancel() {
+  stop_.request_stop();
+  std::unique_lock lock(mutex_);
+  if (!running_ && !outcome_.has_value()) outcome_ = CancelStatus(*context_);
+  EndIfReady(std::move(lock));
+}
+
+void PrepareCall::OnDone() {
+  parts_.log->Write(record_);
+  self_.reset();
+}
+
+}  // namespace terrane::server

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Holds the GLB files that terrane writes to the Khronos validator, without an
+# error and without a warning: check_gltf.sh BUILD_DIR TERRANE. Exit code 77
+# (skipped) as npm_packages.sh.
+set -euo pipefail
+
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+packages="$("${here}/npm_packages.sh" "$1")"
+folder="$(mktemp -d)"
+trap 'rm -rf "${folder}"' EXIT
+
+for preset in surface/fig02 surface/fig10 surface/fig12; do
+  "$2" surface --local --preset "${preset}" --out "${folder}/${preset#*/}.glb" >/dev/null
+done
+"$2" surface --local --preset surface/fig07 --size 300x200 --uvs --out "${folder}/uvs.glb" >/dev/null
+NODE_PATH="${packages}/node_modules" node "${here}/validate_gltf.js" "${folder}"/*.glb
