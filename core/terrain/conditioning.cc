@@ -257,7 +257,7 @@ void Conditioner::FindOwnLevels() {
 void Conditioner::FindHeldPoints() {
   if (process_.source != FractalSource::kSuccessive) return;
   for (const Spot& spot : spots_) {
-    if (spot.nugget != 0) continue;
+    if (spot.standard_error != 0) continue;  // as SpotPins has it
     const auto level = static_cast<std::size_t>(spot.level);
     if (held_.size() <= level) held_.resize(level + 1);
     held_[level].insert(spot.point);

@@ -9,7 +9,7 @@
 // the SIMD target, the build type, or what was generated before.
 //
 // Source: Tan & Chen 2003 (eqs. 5-15); the chain is
-// P_fbm (core/terrain/lattice.h) -> mapping (eq. 10 or LINEAR) -> + d(p).
+// P_fbm (fractal_lattice.h) -> mapping (eq. 10 or LINEAR) -> + d(p).
 #ifndef TERRANE_CORE_TERRAIN_TERRAIN_H_
 #define TERRANE_CORE_TERRAIN_TERRAIN_H_
 

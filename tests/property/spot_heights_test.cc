@@ -184,6 +184,27 @@ INSTANTIATE_TEST_SUITE_P(
     Counts, TilesWithSpotsTest,
     ::testing::Values(1, 100, 10'000 / TERRANE_REPETITION_DIVISOR));
 
+// A noisy height on the macro shape has no nugget under BOLTZMANN (the mapping
+// is flat there), but it is noisy all the same: SUCCESSIVE goes on displacing
+// it.
+TEST(SpotHeightsTest, ANoisySpotOnTheMacroShapeMovesWithItsSource) {
+  TerrainSpec spec;
+  spec.source = FractalSource::kSuccessive;
+  spec.mapping = HeightMapping::kBoltzmann;
+  spec.fidelity = 1;
+  spec.spots.level = 6;
+  spec.spots.points = {{{0.5, 0.5}, 0, 0.1}, {{0.515625, 0.5}, 1, 0}};
+  const auto terrain = MakeSpotTerrain(spec);
+  TileScratch scratch;
+  float fractal = 0;
+  ASSERT_TRUE(terrain
+                  ->GenerateFractal({6, Sampling::kPoint, {33, 32, 1, 1}}, {},
+                                    &scratch, {&fractal, 1})
+                  .ok());
+  // Eq. 10 solved for P, at D - d = 1 and T = 1.
+  EXPECT_NEAR(fractal, (std::sqrt(6.0) + 1e-3) * (1 - std::exp(-0.5)), 1e-5);
+}
+
 // --- Discrete constraints, lines, refinements -------------------------------
 
 TEST(SpotHeightsTest, DiscreteConstraintsAreMetWithEverySource) {
