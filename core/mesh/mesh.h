@@ -2,9 +2,9 @@
 //
 // Shared by every generator that makes one and by the codecs that write it.
 // Three indices a triangle, counter-clockwise seen from the side that its
-// normals point to. Normals and texture coordinates may be left out; when they
-// are there, they have one entry a vertex. A plain value: it owns its memory
-// and belongs to one thread at a time. The z axis points up.
+// normals point to. Normals, texture coordinates and colours may be left out;
+// when they are there, they have one entry a vertex. A plain value: it owns its
+// memory and belongs to one thread at a time. The z axis points up.
 #ifndef TERRANE_CORE_MESH_MESH_H_
 #define TERRANE_CORE_MESH_MESH_H_
 
@@ -37,6 +37,9 @@ struct Mesh {
   std::vector<Float3> normals;  // unit vectors, or empty
   std::vector<Float2> uvs;      // or empty
   std::vector<std::uint32_t> indices;
+  // Linear red, green, blue in [0, 1], or empty: factors of the material's
+  // colour.
+  std::vector<Float3> colors;
 };
 
 }  // namespace terrane::core

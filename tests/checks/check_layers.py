@@ -15,6 +15,7 @@ import sys
 FOUNDATION = ("core/noise/", "core/spline/", "core/grid/", "core/mesh/",
               "core/base/")
 LEAVES = ("core/codec/", "core/grid/", "core/mesh/", "core/base/")
+RAYTRACE = ("core/raytrace/", "core/mesh/", "core/base/", "core/noise/")
 
 # Headers of others, by what they stand for.
 GRPC = (r"grpc(pp)?/", r".*\.grpc\.pb\.h")
@@ -42,6 +43,7 @@ def generator(name):
 # The first layer whose path matches a file is the file's layer.
 LAYERS = (
     Layer("core/codec/", LEAVES, GRPC + PROTOBUF + LOG + SOCKETS),
+    Layer("core/raytrace/", RAYTRACE, GRPC + PROTOBUF + LOG + SOCKETS + FILES),
     generator("terrain"),
     generator("surface"),
     generator("tree"),
