@@ -11,6 +11,8 @@ namespace terrane::client {
 namespace {
 
 constexpr Rgb kGround{0.80, 0.70, 0.54};
+// From linear light to what a screen shows.
+constexpr double kDisplayPower = 1 / 2.2;
 constexpr Rgb kNetLine{0.16, 0.32, 0.55};
 constexpr double kNetLineWidth = 1.6;
 constexpr double kDotWidth = 7;
@@ -85,7 +87,17 @@ class Viewpoint {
   int height_ = 1;
 };
 
-Rgb Shaded(const core::Float3& normal, const SurfaceViewOptions& options) {
+Rgb ColourOf(const core::Mesh& mesh, std::size_t vertex) {
+  if (mesh.colors.empty()) return kGround;
+  const core::Float3& linear = mesh.colors[vertex];
+  const auto shown = [](float part) {
+    return std::pow(static_cast<double>(part), kDisplayPower);
+  };
+  return {shown(linear.x), shown(linear.y), shown(linear.z)};
+}
+
+Rgb Shaded(const Rgb& colour, const core::Float3& normal,
+           const SurfaceViewOptions& options) {
   // Heights that are stretched flatten the normal.
   const double x = static_cast<double>(normal.x);
   const double y = static_cast<double>(normal.y);
@@ -95,7 +107,7 @@ Rgb Shaded(const core::Float3& normal, const SurfaceViewOptions& options) {
       std::fabs(x * light.east + y * light.north + z * light.up) /
       std::sqrt(x * x + y * y + z * z);
   const double shade = kAmbient + (1 - kAmbient) * lit;
-  return {kGround.red * shade, kGround.green * shade, kGround.blue * shade};
+  return {colour.red * shade, colour.green * shade, colour.blue * shade};
 }
 
 void DrawNet(const ControlPolyhedron& net, const Viewpoint& view,
@@ -133,7 +145,7 @@ Picture RenderSurface(const core::Mesh& mesh, const ControlPolyhedron& net,
   std::vector<Rgb> colours;
   for (std::size_t k = 0; k < mesh.positions.size(); ++k) {
     seen.push_back(view.Project(mesh.positions[k]));
-    colours.push_back(Shaded(mesh.normals[k], options));
+    colours.push_back(Shaded(ColourOf(mesh, k), mesh.normals[k], options));
   }
   DepthCanvas depth(options.width * kSupersampling, view.height());
   for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {

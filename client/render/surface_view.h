@@ -32,7 +32,7 @@ struct SurfaceViewOptions {
   core::Light light = {-0.70710678118654752, 0, 0.70710678118654752};
 };
 
-// `mesh` has normals and one vertex at least.
+// `mesh` has normals and one vertex at least; without colours it is of sand.
 Picture RenderSurface(const core::Mesh& mesh, const ControlPolyhedron& net,
                       const SurfaceViewOptions& options);
 
