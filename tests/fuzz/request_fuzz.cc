@@ -74,7 +74,7 @@ bool TerrainKeepsContract(const std::string& bytes) {
 bool SurfaceKeepsContract(const std::string& bytes) {
   v1::EstimateSurfaceRequest request;
   if (!ParseRequest(bytes, request.mutable_request())) return true;
-  const auto estimate = TheActor().EstimateSurface(request);
+  const auto estimate = TheActor().surfaces().Estimate(request);
   if (!estimate.ok()) return IsDocumented(estimate.status());
   return estimate->tiles() >= 0 && estimate->samples() >= 0 &&
          estimate->samples() <= (std::int64_t{1} << 36) &&
