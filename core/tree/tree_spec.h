@@ -117,13 +117,14 @@ struct BendingSpec {
 // Leaves as instances at the tips: branches of the last generations and
 // branches that end (core/tree/leaves.h).
 struct LeafSpec {
-  int count = 3;            // of a tip, [1, 64]
-  double size_share = 0.5;  // of the tip's length, (0, 10]
-  // Instead, in the tree's unit, the same for all; 0: by size_share. [0, 10^6].
-  double size = 0;
+  int count = 3;                // of a tip, [1, 64]
+  double size_share = 0.5;      // of the tip's length, (0, 10]
   double angle_deg = 50;        // from the tip's direction, [0, 180]
   double size_variation = 0.2;  // half the range of sizes, as a share, [0, 1)
-  int generations = 1;          // that have leaves, the last ones, [1, 33]
+  // Instead of size_share, in the tree's unit, the same for all tips; 0: by
+  // size_share. [0, 10^6].
+  double size = 0;
+  int generations = 1;  // that have leaves, the last ones, [1, 33]
   // On every piece of a branch, `count` each, not on its last piece alone.
   bool every_piece = false;
 };

@@ -230,8 +230,8 @@ TEST(Leaves, SitOnSeveralGenerationsAndOnEveryPiece) {
   spec.depth = 5;
   spec.bending.pieces = 3;
   spec.leaves = LeafSpec{.count = 2,
-                         .size = 7,
                          .size_variation = 0,
+                         .size = 7,
                          .generations = 2,
                          .every_piece = true};
   const SegmentBlock tree = Grow(spec);
