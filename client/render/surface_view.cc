@@ -43,14 +43,20 @@ class Viewpoint {
     max_y_ = std::max(max_y_, seen.y);
   }
 
-  // Fits what was included into pictures of this width.
-  void Fit(int width) {
-    margin_ = kMarginShare * width;
+  // Fits what was included into pictures of this width, and of this height at
+  // most.
+  void Fit(int width, int most_height) {
+    const double margin = kMarginShare * width;
     const double extent = std::max(max_x_ - min_x_, 1e-30);
-    scale_ = (width - 2 * margin_) / extent;
+    const double rise = max_y_ - min_y_;
+    scale_ = (width - 2 * margin) / extent;
+    left_ = top_ = margin;
+    if (most_height > 0 && rise * scale_ > most_height - 2 * margin) {
+      scale_ = (most_height - 2 * margin) / rise;
+      left_ = (width - extent * scale_) / 2;
+    }
     height_ = std::clamp(
-        static_cast<int>(std::ceil((max_y_ - min_y_) * scale_ + 2 * margin_)),
-        1, 8 * width);
+        static_cast<int>(std::ceil(rise * scale_ + 2 * margin)), 1, 8 * width);
   }
 
   int height() const { return height_; }
@@ -58,8 +64,8 @@ class Viewpoint {
   // Pixels, y down.
   DepthPoint Project(const core::Float3& point) const {
     const DepthPoint seen = Seen(point);
-    return {margin_ + (seen.x - min_x_) * scale_,
-            margin_ + (max_y_ - seen.y) * scale_, seen.distance};
+    return {left_ + (seen.x - min_x_) * scale_,
+            top_ + (max_y_ - seen.y) * scale_, seen.distance};
   }
 
  private:
@@ -82,7 +88,8 @@ class Viewpoint {
   double max_x_ = -std::numeric_limits<double>::infinity();
   double min_y_ = std::numeric_limits<double>::infinity();
   double max_y_ = -std::numeric_limits<double>::infinity();
-  double margin_ = 0;
+  double left_ = 0;  // of what is seen, in pixels
+  double top_ = 0;
   double scale_ = 1;
   int height_ = 1;
 };
@@ -139,7 +146,8 @@ Picture RenderSurface(const core::Mesh& mesh, const ControlPolyhedron& net,
   Viewpoint view(options);
   for (const core::Float3& point : mesh.positions) view.Include(point);
   for (const core::Float3& point : net.points) view.Include(point);
-  view.Fit(options.width * kSupersampling);
+  view.Fit(options.width * kSupersampling,
+           options.most_height * kSupersampling);
 
   std::vector<DepthPoint> seen;
   std::vector<Rgb> colours;
