@@ -169,6 +169,15 @@ class TreeTest(unittest.TestCase):
         done = self.local("--recipe", recipe, "--out", self.folder / "d.csv", expected=1)
         self.assertIn("is not a tree recipe", done.stderr)
 
+    def test_any_field_of_the_recipe_can_be_set(self):
+        choice = ["--preset", "tree/sparse", "--depth", 4, "--out", self.folder / "t.glb"]
+        self.local(*choice, "--set", "genetic.left_share=0.25", "--set", "genetic.twigs_end=false", "--set", "genetic.density=WANTED_HIGH")
+        genetic = read_glb_json(self.folder / "t.glb")["asset"]["extras"]["recipe"]["genetic"]
+        self.assertEqual((genetic["left_share"], genetic["density"]), (0.25, "WANTED_HIGH"))
+        self.assertIs(genetic["twigs_end"], False)
+        for wrong in ["genetic.leftshare=1", "genetic.left_share", "left_share=1", "=", "genetic.density=3x"]:
+            self.assertIn("--set: must be FIELD=VALUE", self.local(*choice, "--set", wrong, expected=1).stderr)
+
     def test_pictures_show_something(self):
         for preset in ["tree/plain", "tree/cantor-statistical", "tree/willow"]:
             out = self.folder / "t.png"
