@@ -24,19 +24,12 @@
 #include "absl/status/statusor.h"
 #include "core/flower/estimate_flower.h"
 #include "core/flower/flower_spec.h"
-#include "core/flower/instance_block.h"
+#include "core/flower/placement.h"
+#include "core/flower/prototypes.h"
 #include "core/flower/validate_flower.h"
-#include "core/mesh/mesh.h"
+#include "core/noise/perlin_noise.h"
 
 namespace terrane::core {
-
-// A mesh that instances share.
-struct FlowerPrototype {
-  std::string name;  // such as "petal 0 sketch 1 variant 0 step 2"
-  FlowerOrgan organ = FlowerOrgan::kPetal;
-  Material material;
-  Mesh mesh;
-};
 
 class Flower {
  public:
@@ -54,18 +47,25 @@ class Flower {
   // area-weighted variance of its normals is 0.52, above 0.4".
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  // Rows of instances: of a plant, and of the bed.
-  std::int64_t rows_of_plant() const { return rows_of_plant_; }
-  std::int64_t rows() const { return rows_of_plant_ * spec_.bed.plants; }
+  // Where the instances stand.
+  const Placement& placement() const { return placement_; }
+
+  // Rows of instances of the whole bed.
+  std::int64_t rows() const {
+    return placement_.rows_of_plant() * spec_.bed.plants;
+  }
 
  private:
   explicit Flower(const FlowerSpec& spec);
+  Flower(const Flower&) = delete;
+  Flower& operator=(const Flower&) = delete;
 
-  FlowerSpec spec_;
-  FlowerEstimate estimate_;
-  std::vector<FlowerPrototype> prototypes_;
-  std::vector<std::string> warnings_;
-  std::int64_t rows_of_plant_ = 0;
+  const FlowerSpec spec_;
+  const FlowerEstimate estimate_;
+  const PerlinNoise noise_;
+  const Placement placement_;
+  const std::vector<FlowerPrototype> prototypes_;
+  const std::vector<std::string> warnings_;
 };
 
 }  // namespace terrane::core

@@ -41,7 +41,7 @@ class FlowerGenerator {
 
  private:
   std::shared_ptr<const Flower> flower_;
-  const std::size_t block_rows_;
+  const std::int64_t block_rows_;
   std::int64_t row_;
 };
 

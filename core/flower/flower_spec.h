@@ -179,7 +179,8 @@ struct PetalGroup {
   // 0 lies flat, 90 stands upright, more leans inwards. [-180, 180].
   double angle_deg = 90;
   double open_angle_deg = 20;
-  // Length of the first and the last petal, (0, 100].
+  // Length of the first and the last petal (of a whorl: layer), (0, 100]. The
+  // last counts where there is only one.
   double inner_size = 1;
   double outer_size = 1;
   // Turn about a petal's own length, so that one edge lies over the neighbour,
@@ -267,6 +268,9 @@ struct BedSpec {
   enum class Layout { kGrid, kVogel } layout = Layout::kGrid;
   double spacing_m = 0.3;  // (0, 100]
   double jitter = 0.3;     // of a grid, as a share of the spacing, [0, 1]
+  // Chance turns the plants of a bed about their stems, this far at most, [0,
+  // 180]; a single plant stands as it is.
+  double turn_deg = 180;
 };
 
 struct FlowerSpec {
