@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
   const Interrupt interrupt;
 
   CLI::App app(
-      "Fractal terrain and surfaces: from a server, or made here with --local.",
+      "Fractal terrain, surfaces and trees: from a server, or made here with "
+      "--local.",
       "terrane");
   app.set_version_flag("--version", TERRANE_VERSION);
   app.require_subcommand(1);
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
   AddProfileCommand(&app, &action);
   AddHeightsCommand(&app, &action);
   AddSurfaceCommand(&app, &action);
+  AddTreeCommand(&app, &action);
   AddRenderCommand(&app, &action);
   AddVerifyCommand(&app, &action);
   AddPresetsCommand(&app, &action);

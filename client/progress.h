@@ -40,14 +40,15 @@ class ProgressLine {
   Clock::time_point shown_;
 };
 
-// Of samples that are streamed.
+// Of samples that are streamed, or of other units.
 class Progress : private ProgressLine {
  public:
-  Progress(ProgressMode mode, std::int64_t total_samples);
+  Progress(ProgressMode mode, std::int64_t total, std::string unit = "samples");
 
-  void Advance(std::int64_t samples);
+  void Advance(std::int64_t units);
 
  private:
+  const std::string unit_;
   const std::int64_t total_;
   std::int64_t done_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "client/chosen_surface.h"
+#include "client/chosen_tree.h"
 #include "client/commands/command.h"
 #include "client/commands/shared_options.h"
 #include "client/exit_code.h"
@@ -68,6 +69,15 @@ int Show(const PresetsCommand& command, Backend* backend,
     request.set_name(command.name);
     const absl::StatusOr<v1::GetSurfacePresetResponse> answer =
         backend->GetSurfacePreset(request, stop);
+    if (!answer.ok()) return ReportStatus(answer.status());
+    Print(command, answer->preset());
+    return kExitOk;
+  }
+  if (IsTreePreset(command.name)) {
+    v1::GetTreePresetRequest request;
+    request.set_name(command.name);
+    const absl::StatusOr<v1::GetTreePresetResponse> answer =
+        backend->trees().GetTreePreset(request, stop);
     if (!answer.ok()) return ReportStatus(answer.status());
     Print(command, answer->preset());
     return kExitOk;

@@ -73,6 +73,8 @@ core::GeneticSpec ReadGenetic(const v1::GeneticGrowth& genetic,
   if (genetic.has_azimuth_spread_deg()) {
     spec.azimuth_spread_deg = genetic.azimuth_spread_deg();
   }
+  ReadNonZero(genetic.lateral_share(), &spec.lateral_share);
+  spec.least_length = genetic.least_length();
   return spec;
 }
 
@@ -92,6 +94,9 @@ core::LeafSpec ReadLeaves(const v1::TreeLeaves& leaves) {
   if (leaves.has_size_variation()) {
     spec.size_variation = leaves.size_variation();
   }
+  spec.size = leaves.size();
+  ReadNonZero(leaves.generations(), &spec.generations);
+  spec.every_piece = leaves.every_piece();
   return spec;
 }
 
@@ -119,6 +124,8 @@ void WriteGenetic(const core::TreeSpec& tree, v1::GeneticGrowth* genetic) {
   genetic->set_crown_taper(spec.crown_taper);
   genetic->set_leader(spec.leader);
   genetic->set_azimuth_spread_deg(spec.azimuth_spread_deg);
+  genetic->set_lateral_share(spec.lateral_share);
+  genetic->set_least_length(spec.least_length);
 }
 
 void WriteForm(const core::TreeSpec& spec, v1::TreeRecipe* recipe) {
@@ -165,6 +172,7 @@ core::TreeSpec ReadTreeRecipe(const v1::TreeRecipe& recipe,
   ReadNonZero(recipe.bending().pieces(), &spec.bending.pieces);
   spec.bending.gravity = recipe.bending().gravity();
   spec.bending.light = recipe.bending().light();
+  spec.bending.stiffness = recipe.bending().stiffness();
   if (recipe.has_leaves()) spec.leaves = ReadLeaves(recipe.leaves());
   core::ValidateTreeSpec(spec, limits, prefix, violations);
   return spec;
@@ -185,11 +193,15 @@ v1::TreeRecipe WriteTreeRecipe(const core::TreeSpec& spec) {
   recipe.mutable_bending()->set_pieces(spec.bending.pieces);
   recipe.mutable_bending()->set_gravity(spec.bending.gravity);
   recipe.mutable_bending()->set_light(spec.bending.light);
+  recipe.mutable_bending()->set_stiffness(spec.bending.stiffness);
   if (spec.leaves.has_value()) {
     recipe.mutable_leaves()->set_count(spec.leaves->count);
     recipe.mutable_leaves()->set_size_share(spec.leaves->size_share);
     recipe.mutable_leaves()->set_angle_deg(spec.leaves->angle_deg);
     recipe.mutable_leaves()->set_size_variation(spec.leaves->size_variation);
+    recipe.mutable_leaves()->set_size(spec.leaves->size);
+    recipe.mutable_leaves()->set_generations(spec.leaves->generations);
+    recipe.mutable_leaves()->set_every_piece(spec.leaves->every_piece);
   }
   return recipe;
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Holds the GLB files that terrane writes to the Khronos validator, without an
-# error and without a warning: check_gltf.sh BUILD_DIR TERRANE. Exit code 77
-# (skipped) as npm_packages.sh.
+# error and without a warning: check_gltf.sh BUILD_DIR TERRANE WRITE_SCENES. Exit
+# code 77 (skipped) as npm_packages.sh.
 set -euo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -13,4 +13,5 @@ for preset in surface/fig02 surface/fig10 surface/fig12; do
   "$2" surface --local --preset "${preset}" --out "${folder}/${preset#*/}.glb" >/dev/null
 done
 "$2" surface --local --preset surface/fig07 --size 300x200 --uvs --out "${folder}/uvs.glb" >/dev/null
+"$3" "${folder}"
 NODE_PATH="${packages}/node_modules" node "${here}/validate_gltf.js" "${folder}"/*.glb
