@@ -167,6 +167,14 @@ const std::vector<FlowerRule> kOrganRules = {
      "must be in [0.2, 1], got 0.1"},
     {"StemHeight", [](FlowerSpec* s) { s->stem->height = kNan; }, "stem.height",
      "must be in (0, 1000], got nan"},
+    {"StemFolds",
+     [](FlowerSpec* s) {
+       s->stem->nod_deg = 90;
+       s->stem->bend = 0;
+       s->stem->height = 1;
+       s->stem->radius = 0.2;
+     },
+     "stem.radius", "must be in (0, 0.106103"},
     {"StemBend", [](FlowerSpec* s) { s->stem->bend = 0.6; }, "stem.bend",
      "must be in [0, 0.5], got 0.6"},
     {"ManyGroups", [](FlowerSpec* s) { s->petals.resize(17, s->petals[0]); },
