@@ -40,15 +40,23 @@ class BladeWriter {
                            row.positions.end());
     mesh_.normals.insert(mesh_.normals.end(), row.normals.begin(),
                          row.normals.end());
-    const auto half = static_cast<float>(row.positions.size() - 1) * 0.5f;
-    for (std::size_t k = 0; k < row.positions.size(); ++k) {
-      const float x =
-          half > 0 ? row.half_width * ((static_cast<float>(k) - half) / half)
-                   : 0.0f;
-      mesh_.uvs.push_back({0.5f + 0.5f * (x / widest_), row.y});
-      if (painter_) {
-        mesh_.colors.push_back(painter_->At(x, row.y, row.half_width));
-      }
+    const std::size_t first = mesh_.uvs.size();
+    const std::size_t count = row.positions.size();
+    mesh_.uvs.resize(first + count);
+    Float2* const uvs = mesh_.uvs.data() + first;
+    const float step =
+        count > 1 ? 2.0f * row.half_width / static_cast<float>(count - 1)
+                  : 0.0f;
+    const float left = count > 1 ? row.half_width : 0.0f;
+    const float scale = 0.5f / widest_;
+    for (std::size_t k = 0; k < count; ++k) {
+      const float x = step * static_cast<float>(k) - left;
+      uvs[k] = {0.5f + scale * x, row.y};
+    }
+    if (!painter_) return;
+    for (std::size_t k = 0; k < count; ++k) {
+      const float x = step * static_cast<float>(k) - left;
+      mesh_.colors.push_back(painter_->At(x, row.y, row.half_width));
     }
   }
 
@@ -56,27 +64,27 @@ class BladeWriter {
     const auto row = static_cast<std::uint32_t>(blade_.columns) + 1;
     const auto inner_rows = static_cast<std::uint32_t>(blade_.rows) - 1;
     const std::uint32_t tip = 1 + row * inner_rows;
-    mesh_.indices.reserve(std::size_t{6} * (row - 1) * inner_rows);
-    for (std::uint32_t k = 1; k < row; ++k) AddTriangle(0, k + 1, k);
+    mesh_.indices.resize(std::size_t{6} * (row - 1) * inner_rows);
+    std::uint32_t* next = mesh_.indices.data();
+    const auto add = [&next](std::uint32_t a, std::uint32_t b,
+                             std::uint32_t c) {
+      next[0] = a;
+      next[1] = b;
+      next[2] = c;
+      next += 3;
+    };
+    for (std::uint32_t k = 1; k < row; ++k) add(0, k + 1, k);
     for (std::uint32_t j = 1; j < inner_rows; ++j) {
       for (std::uint32_t k = 0; k + 1 < row; ++k) {
         const std::uint32_t below = 1 + (j - 1) * row + k;
-        AddTriangle(below, below + 1, below + row);
-        AddTriangle(below + 1, below + row + 1, below + row);
+        add(below, below + 1, below + row);
+        add(below + 1, below + row + 1, below + row);
       }
     }
-    for (std::uint32_t k = tip - row; k + 1 < tip; ++k) {
-      AddTriangle(k, k + 1, tip);
-    }
+    for (std::uint32_t k = tip - row; k + 1 < tip; ++k) add(k, k + 1, tip);
   }
 
  private:
-  void AddTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    mesh_.indices.push_back(a);
-    mesh_.indices.push_back(b);
-    mesh_.indices.push_back(c);
-  }
-
   const BladeSpec& blade_;
   const float widest_;
   std::optional<BladePainter> painter_;

@@ -20,8 +20,8 @@
 #ifndef TERRANE_CORE_FLOWER_BLADE_ROWS_H_
 #define TERRANE_CORE_FLOWER_BLADE_ROWS_H_
 
+#include <array>
 #include <cstddef>
-#include <vector>
 
 #include "core/flower/blade_outline.h"
 #include "core/flower/blade_surface.h"
@@ -58,25 +58,40 @@ class BladeRows final : public BladeSurface {
     double curvature = 0;
   };
 
-  // One number a vertex.
-  struct Columns {
-    void Resize(std::size_t count);
-
-    std::vector<float> x;
-    std::vector<float> cell;  // distance from the lattice column to the left
-    std::vector<LatticeColumn> left;
-    std::vector<LatticeColumn> right;
-    std::vector<float> depth, depth_dx, depth_dy;
-    std::vector<Float3> positions;
-    std::vector<Float3> normals;
+  // Vertices that are worked on together, one a lane: loops over whole arrays
+  // of one object are what compilers make vectors of.
+  static constexpr std::size_t kLanes = 8;
+  using Lane = std::array<float, kLanes>;
+  struct Lanes {
+    Lane x;
+    // Distance from the lattice column to the left, and the two columns.
+    Lane cell;
+    Lane left_slope, left_level, left_slope_dy, left_level_dy;
+    Lane right_slope, right_level, right_slope_dy, right_level_dy;
+    Lane depth, depth_dx, depth_dy;
+    Lane px, py, pz;
+    Lane nx, ny, nz;
+  };
+  // Lattice columns of a row, the last one found.
+  struct NoiseLine {
+    float y_rest = 0;
+    int j = 0;
+    bool found = false;
+    int column = 0;
+    LatticeColumn left;
+    LatticeColumn right;
   };
 
   double Theta(double y) const;
   void MoveTo(double y);
-  void PlaceColumns(float y, float half_width, int first, int half);
-  void RaiseColumns(float y, std::size_t count);
-  void BendColumns(std::size_t count);
-  void Store(int half, BladeRow* row) const;
+  NoiseLine LineAt(float y) const;
+  // Vertex `lane` at x.
+  void Place(float x, std::size_t lane, NoiseLine* line);
+  void Raise(float y);
+  void Bend();
+  // Writes lanes for the columns from k on; of a mirrored sheet the left half
+  // too.
+  void Store(int k, int half, BladeRow* row) const;
 
   const PerlinNoise& noise_;
   const BladeOutline& outline_;
@@ -92,7 +107,7 @@ class BladeRows final : public BladeSurface {
   const double base_curl_;  // the same
   const double curl_change_;
   Midline midline_;
-  Columns columns_;
+  Lanes lanes_;
 };
 
 }  // namespace terrane::core

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "core/mesh/float3.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 // Waves of the perturbation along a stem, and the noise's share of the bend: an
 // rms slope of 0.217 over half a wave moves the tip by about the bend.
-constexpr float kWaves = 2;
+constexpr double kWaves = 2;
 constexpr double kGain = 8;
 // Where the tip begins to nod.
 constexpr double kNodFrom = 0.75;
@@ -24,7 +25,7 @@ float NoiseRow(int variant, int direction) {
 
 Vector DirectionAt(const StemSpec& spec, int variant, double share,
                    const PerlinNoise& noise) {
-  const float along = kWaves * static_cast<float>(share);
+  const auto along = static_cast<float>(kWaves * share);
   const double slope = kGain * spec.bend;
   const double x =
       static_cast<double>(noise.At(along, NoiseRow(variant, 0)).value);
@@ -138,6 +139,17 @@ StemLine::Place StemLine::At(double share) const {
 
 double StemRadius(const StemSpec& spec, double share) {
   return spec.radius * (1 + (spec.taper - 1) * share);
+}
+
+double MostStemRadius(const StemSpec& spec) {
+  constexpr double kRadians = 0.017453292519943295;
+  constexpr double kNoiseSlope = 2;   // the noise's derivatives are below it
+  constexpr double kStepSlope = 1.5;  // of the smooth step
+  const double nod = kStepSlope / (1 - kNodFrom) * spec.nod_deg * kRadians;
+  const double bend = kNoiseSlope * kWaves * kGain * spec.bend;
+  const double thickest = std::max(1.0, spec.taper);
+  return nod + bend > 0 ? spec.height / ((nod + bend) * thickest)
+                        : std::numeric_limits<double>::infinity();
 }
 
 Mesh MakeStem(const StemSpec& spec, const StemLine& line) {

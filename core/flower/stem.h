@@ -41,6 +41,10 @@ MeshSize StemSize(const StemSpec& spec);
 // Its radius at a share of its length.
 double StemRadius(const StemSpec& spec, double share);
 
+// The largest radius at the base with which a tube along it nowhere folds into
+// itself: its midline's least radius of curvature.
+double MostStemRadius(const StemSpec& spec);
+
 }  // namespace terrane::core
 
 #endif  // TERRANE_CORE_FLOWER_STEM_H_

@@ -8,6 +8,7 @@
 #include "core/flower/blade_outline.h"
 #include "core/flower/estimate_flower.h"
 #include "core/flower/solid_mesh.h"
+#include "core/flower/stem.h"
 
 namespace terrane::core {
 namespace {
@@ -214,11 +215,14 @@ void ValidateLeaves(const Path& path, const LeafGroup& group,
 }
 
 void ValidateStem(const Path& path, const StemSpec& stem, FieldChecks* checks) {
-  checks->Number(path.Field("height"), stem.height, {0, 1000, true, false});
-  checks->Number(path.Field("radius"), stem.radius, {0, 10, true, false});
-  checks->Number(path.Field("taper"), stem.taper, {0, 4, true, false});
-  checks->Number(path.Field("bend"), stem.bend, {0, 0.5});
-  checks->Number(path.Field("nod_deg"), stem.nod_deg, {0, 170});
+  const bool good =
+      checks->Number(path.Field("height"), stem.height,
+                     {0, 1000, true, false}) &
+      checks->Number(path.Field("taper"), stem.taper, {0, 4, true, false}) &
+      checks->Number(path.Field("bend"), stem.bend, {0, 0.5}) &
+      checks->Number(path.Field("nod_deg"), stem.nod_deg, {0, 170});
+  const double most = good ? std::min(10.0, MostStemRadius(stem)) : 10.0;
+  checks->Number(path.Field("radius"), stem.radius, {0, most, true, false});
   checks->Integer(path.Field("variants"), stem.variants, 1, 16);
   checks->Integer(path.Field("sides"), stem.sides, 3, 64);
   checks->Integer(path.Field("rows"), stem.rows, 2, 256);
