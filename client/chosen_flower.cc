@@ -11,8 +11,7 @@ namespace {
 
 constexpr std::string_view kFlowerPrefix = "flower/";
 
-absl::Status ReadRecipeFile(const std::string& path,
-                            v1::FlowerRecipe* recipe) {
+absl::Status ReadRecipeFile(const std::string& path, v1::FlowerRecipe* recipe) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return absl::NotFoundError("cannot read " + path);
   const std::string text(std::istreambuf_iterator<char>(file), {});

@@ -53,8 +53,7 @@ absl::StatusOr<FlowerModel> FlowerModel::Stream(const v1::FlowerChoice& choice,
       request,
       [&](const v1::FlowerHeader& header) {
         model.header_ = header;
-        model.prototypes_.resize(
-            static_cast<std::size_t>(header.prototypes()));
+        model.prototypes_.resize(static_cast<std::size_t>(header.prototypes()));
         bar.emplace(progress, header.rows());
         return absl::OkStatus();
       },
@@ -127,8 +126,8 @@ core::Scene FlowerModel::View() const {
     if (index == scene.materials.size()) {
       scene.materials.push_back(std::move(material));
     }
-    scene.objects.push_back({prototype.info.name(), &prototype.mesh, index,
-                             &prototype.instances});
+    scene.objects.push_back(
+        {prototype.info.name(), &prototype.mesh, index, &prototype.instances});
   }
   return scene;
 }

@@ -7,7 +7,7 @@
 // serialized request or, when they start with '{', protobuf JSON) and, in every
 // build, as a test that replays tests/fuzz/corpus: request holds seeds of
 // StreamTiles, surface of StreamSurface, tree of StreamTreeMesh, forest of
-// StreamForest.
+// StreamForest, flower of StreamFlower.
 #include <google/protobuf/util/json_util.h>
 
 #include <algorithm>
@@ -124,10 +124,26 @@ bool TreeKeepsContract(const std::string& bytes) {
          RunKeepsContract(TheActor().trees().OpenForest(forest), kFewMessages);
 }
 
+bool FlowerKeepsContract(const std::string& bytes) {
+  constexpr std::int64_t kFewBytes = 4 << 20;
+  v1::StreamFlowerRequest request;
+  if (!ParseRequest(bytes, &request)) return true;
+  v1::EstimateFlowerRequest price;
+  *price.mutable_flower() = request.flower();
+  const auto estimate = TheActor().flowers().Estimate(price);
+  if (!estimate.ok()) return IsDocumented(estimate.status());
+  if (estimate->prototypes() < 1 || estimate->instances() < 1 ||
+      !(estimate->cpu_seconds() >= 0)) {
+    return false;
+  }
+  return estimate->prototype_bytes() > kFewBytes ||
+         RunKeepsContract(TheActor().flowers().Open(request), 5);
+}
+
 // False when an answer breaks the contract.
 bool RequestKeepsContract(const std::string& bytes) {
   return TerrainKeepsContract(bytes) && SurfaceKeepsContract(bytes) &&
-         TreeKeepsContract(bytes);
+         TreeKeepsContract(bytes) && FlowerKeepsContract(bytes);
 }
 
 }  // namespace terrane::server
@@ -169,7 +185,7 @@ std::string BytesOf(const std::filesystem::path& seed) {
 }
 
 TEST(RequestFuzzTest, CorpusKeepsTheContract) {
-  for (const char* folder : {"request", "surface", "tree", "forest"}) {
+  for (const char* folder : {"request", "surface", "tree", "forest", "flower"}) {
     const std::vector<std::filesystem::path> seeds = Seeds(folder);
     for (const std::filesystem::path& seed : seeds) {
       EXPECT_TRUE(RequestKeepsContract(BytesOf(seed))) << seed.filename();
@@ -193,6 +209,7 @@ TEST(RequestFuzzTest, JsonSeedsAreRequests) {
   ExpectJsonSeedsAre<v1::StreamSurfaceRequest>("surface");
   ExpectJsonSeedsAre<v1::StreamTreeMeshRequest>("tree");
   ExpectJsonSeedsAre<v1::StreamForestRequest>("forest");
+  ExpectJsonSeedsAre<v1::StreamFlowerRequest>("flower");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Runs of trees read to their end, for tests.
+// The rows of trees put together again, for tests.
 #ifndef TERRANE_TESTS_SERVER_TREE_RUNS_H_
 #define TERRANE_TESTS_SERVER_TREE_RUNS_H_
 
@@ -8,23 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "server/actor/message_run.h"
 #include "terrane/v1/tree.pb.h"
+#include "tests/server/read_all.h"
 
 namespace terrane::server {
-
-// Every message of a run; the first is the header.
-template <typename Message>
-std::vector<Message> ReadAll(OpenedRun<Message> run) {
-  std::vector<Message> messages;
-  EXPECT_TRUE(run.ok()) << run.status();
-  while (run.ok() && !(*run)->Done()) {
-    const absl::Status status = (*run)->Next({}, &messages.emplace_back());
-    EXPECT_TRUE(status.ok()) << status;
-    if (!status.ok()) break;
-  }
-  return messages;
-}
 
 // The rows of messages as columns, whatever blocks they came in.
 struct TreeColumns {
