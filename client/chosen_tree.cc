@@ -1,5 +1,7 @@
 #include "client/chosen_tree.h"
 
+#include <google/protobuf/field_mask.pb.h>
+#include <google/protobuf/util/field_mask_util.h>
 #include <google/protobuf/util/json_util.h>
 
 #include <fstream>
@@ -34,6 +36,45 @@ absl::Status UsePreset(const std::string& name, TreeBackend* backend,
   return absl::OkStatus();
 }
 
+// A value as JSON: numbers, true and false as they are, names in quotes.
+std::string JsonValue(const std::string& text) {
+  const bool is_bare =
+      text == "true" || text == "false" ||
+      text.find_first_not_of("+-.0123456789eE") == std::string::npos;
+  return is_bare ? text : "\"" + text + "\"";
+}
+
+// Sets one field of the recipe, also to what it would be by default.
+absl::Status Apply(const std::string& setting, v1::TreeRecipe* recipe) {
+  using google::protobuf::FieldMask;
+  using google::protobuf::util::FieldMaskUtil;
+  const std::size_t equals = setting.find('=');
+  const std::string path = setting.substr(0, equals);
+  std::string json =
+      equals == std::string::npos ? "" : JsonValue(setting.substr(equals + 1));
+  for (std::size_t end = path.size(); end != std::string::npos;) {
+    const std::size_t dot =
+        end == 0 ? std::string::npos : path.rfind('.', end - 1);
+    const std::size_t start = dot == std::string::npos ? 0 : dot + 1;
+    json = "{\"" + path.substr(start, end - start) + "\":" + json + "}";
+    end = dot;
+  }
+  v1::TreeRecipe parsed;
+  const auto status =
+      google::protobuf::util::JsonStringToMessage(json, &parsed);
+  if (!status.ok()) {
+    return absl::InvalidArgumentError(
+        "--set: must be FIELD=VALUE with a field of TreeRecipe, such as "
+        "genetic.left_share=0.2, got \"" +
+        setting + "\"");
+  }
+  FieldMask mask;
+  mask.add_paths(path);
+  FieldMaskUtil::MergeMessageTo(parsed, mask, FieldMaskUtil::MergeOptions(),
+                                recipe);
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 bool IsTreePreset(const std::string& name) {
@@ -57,6 +98,10 @@ absl::StatusOr<ChosenTree> ChooseTree(const TreeOptions& options,
   if (options.depth.has_value()) tree.recipe.set_depth(*options.depth);
   if (options.dimensions.has_value()) {
     tree.recipe.set_dimensions(*options.dimensions);
+  }
+  for (const std::string& setting : options.settings) {
+    const absl::Status applied = Apply(setting, &tree.recipe);
+    if (!applied.ok()) return applied;
   }
   return tree;
 }

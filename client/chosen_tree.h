@@ -6,6 +6,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/tree_backend.h"
@@ -21,6 +22,8 @@ struct TreeOptions {
   std::optional<std::int64_t> seed;
   std::optional<int> depth;
   std::optional<int> dimensions;
+  // Any other field of the recipe, as "genetic.left_share=0.2".
+  std::vector<std::string> settings;
 };
 
 struct ChosenTree {
@@ -33,8 +36,8 @@ struct ChosenTree {
 bool IsTreePreset(const std::string& name);
 
 // Reads the file or asks for the preset. Errors: none or both of the two, an
-// unreadable file, a recipe that is no JSON of a TreeRecipe, and those of the
-// backend.
+// unreadable file, a recipe that is no JSON of a TreeRecipe, a setting that
+// names no field of it, and those of the backend.
 absl::StatusOr<ChosenTree> ChooseTree(const TreeOptions& options,
                                       TreeBackend* backend,
                                       std::stop_token stop);

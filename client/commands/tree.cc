@@ -142,6 +142,11 @@ void AddChoiceOptions(CLI::App* app, TreeOptions* tree) {
   app->add_option("--dim", tree->dimensions, "2 or 3 dimensions")
       ->check(CLI::IsMember({2, 3}))
       ->group("Tree");
+  app->add_option("--set", tree->settings,
+                  "Any field of the recipe, such as genetic.left_share=0.2; "
+                  "may be given again")
+      ->type_name("FIELD=VALUE")
+      ->group("Tree");
 }
 
 void AddForestOptions(CLI::App* app, TreeCommand* command) {

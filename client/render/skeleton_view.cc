@@ -1,6 +1,7 @@
 #include "client/render/skeleton_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -11,12 +12,11 @@ constexpr double kMarginShare = 0.04;
 constexpr double kThinnest = 0.75;  // pixels
 // Drawn larger and shrunk, so that thin twigs are seen.
 constexpr int kOversampling = 2;
-// Of a Cantor set's bars, as shares of the first one's length.
+// Of a Cantor set's bars, as shares of the first one's length; and their
+// largest radius as a share of their own, so that round ends stay apart.
 constexpr float kBarStep = 0.09f;
 constexpr float kBarRadius = 0.018f;
-
-// Pieces that a row which tapers is drawn in.
-constexpr int kPieces = 4;
+constexpr float kBarRadiusOfOwn = 0.3f;
 
 // From the plane y = 0 to pixels.
 class Projection {
@@ -67,23 +67,23 @@ Picture DrawSkeleton(const core::SegmentBlock& tree, int size,
   const int drawn_size = size * kOversampling;
   const Projection projection(tree, drawn_size);
   Canvas canvas(drawn_size, drawn_size, {1, 1, 1});
-  const auto between = [](float from, float to, int piece) {
-    return from + (to - from) * static_cast<float>(piece) / kPieces;
-  };
   for (std::size_t row = 0; row < tree.rows(); ++row) {
-    const core::Float3& start = tree.start[row];
-    const core::Float3& end = tree.end[row];
-    for (int piece = 0; piece < kPieces; ++piece) {
+    const PixelPoint start = projection.Project(tree.start[row]);
+    const PixelPoint end = projection.Project(tree.end[row]);
+    const double from = projection.Width(tree.radius_start[row]);
+    const double to = projection.Width(tree.radius_end[row]);
+    // A row that tapers is drawn in pieces, each half a pixel thinner.
+    const int pieces = 1 + static_cast<int>(2 * std::fabs(to - from));
+    for (int piece = 0; piece < pieces; ++piece) {
       const auto at = [&](int k) {
-        return projection.Project(
-            {between(start.x, end.x, k), 0, between(start.z, end.z, k)});
+        const double along = static_cast<double>(k) / pieces;
+        return PixelPoint{std::lerp(start.x, end.x, along),
+                          std::lerp(start.y, end.y, along)};
       };
-      const float radius =
-          between(tree.radius_start[row], tree.radius_end[row], piece);
-      canvas.DrawLine(
-          at(piece), at(piece + 1),
-          std::max(projection.Width(radius), kThinnest * kOversampling),
-          colour);
+      const double width =
+          std::lerp(from, to, static_cast<double>(piece) / pieces);
+      canvas.DrawLine(at(piece), at(piece + 1),
+                      std::max(width, kThinnest * kOversampling), colour);
     }
   }
   return Resized(canvas.picture(), size, size);
@@ -95,8 +95,11 @@ void SpreadGenerations(core::SegmentBlock* set) {
   for (std::size_t row = 0; row < set->rows(); ++row) {
     const float z =
         -kBarStep * length * static_cast<float>(generations.At(row));
-    set->start[row].z = set->end[row].z = z;
-    set->radius_start[row] = set->radius_end[row] = kBarRadius * length;
+    const float own = set->end[row].x - set->start[row].x;
+    const float radius = std::min(kBarRadius * length, kBarRadiusOfOwn * own);
+    set->start[row] = {set->start[row].x + radius, 0, z};
+    set->end[row] = {set->end[row].x - radius, 0, z};
+    set->radius_start[row] = set->radius_end[row] = radius;
   }
 }
 
