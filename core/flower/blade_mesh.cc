@@ -127,7 +127,7 @@ BladeShape ShapeAt(const BladeSpec& blade, int step) {
   return {Mix(a.across_deg, b.across_deg, share),
           Mix(a.base_curl_deg, b.base_curl_deg, share),
           Mix(a.tip_curl_deg, b.tip_curl_deg, share),
-          Mix(a.flare, b.flare, share)};
+          Mix(a.flare, b.flare, share), Mix(a.relief, b.relief, share)};
 }
 
 MeshSize BladeSize(const BladeSpec& blade) {

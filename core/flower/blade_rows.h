@@ -1,7 +1,7 @@
 // BladeRows: a petal's surface, row by row from its base to its tip.
 //
 // The flat sheet over the sketch has the depth
-//   z(x, y) = k Nd noise(Nsx x, Nsy y) - flare s^3,
+//   z(x, y) = k Nd relief noise(Nsx x, Nsy y) - flare s^3,
 //   s = ((x / widest)^2 + y^2) / farthest,
 // x replaced by |x| where the relief is mirrored. It is then bent: the midline
 // turns by theta(y) = base y + (tip - base) y^2 / 2 in the plane x = 0, and

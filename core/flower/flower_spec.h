@@ -90,6 +90,8 @@ struct BladeShape {
   double tip_curl_deg = 0;
   // Lip: how far the margin of tip and sides leans out, [-1, 1].
   double flare = 0;
+  // Factor of the relief's amplitude, [0, 10]: a bud is smoother.
+  double relief = 1;
 
   bool operator==(const BladeShape&) const = default;
 };
@@ -251,8 +253,9 @@ struct StemSpec {
 // --- Growth, variation and beds ---------------------------------------------
 
 // The paper's growth stage. The petals n <= buds stay closed, the others open
-// to phi - angle_ratio (phi - phi_open) (n - buds) / (N - buds), in every
-// group; the petals of a whorl's layer open together.
+// to phi - angle_ratio (phi - phi_open) (n - buds) / (N - buds), in every group
+// of Vogel's. The petals of a whorl's layer open together, to the angle of the
+// layer's last; a whorl has no buds.
 struct GrowthStage {
   double buds = 0;         // [Nb], [0, 10^5]
   double angle_ratio = 1;  // [Sa], [0, 1]

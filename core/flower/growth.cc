@@ -22,9 +22,11 @@ GrowthStage StageAt(const GrowthStage& early, const GrowthStage& full,
           Mix(early.spread, full.spread, stage)};
 }
 
-double Openness(const GrowthStage& stage, double n, double count) {
-  if (n <= stage.buds) return 0;
-  return stage.angle_ratio * (n - stage.buds) / (count - stage.buds);
+double Openness(const GrowthStage& stage, ArrangementKind kind, double n,
+                double count) {
+  const double buds = kind == ArrangementKind::kVogel ? stage.buds : 0;
+  if (n <= buds) return 0;
+  return stage.angle_ratio * (n - buds) / (count - buds);
 }
 
 Seat SeatOf(const Arrangement& arrangement, int n, int count, double spread) {

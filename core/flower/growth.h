@@ -12,10 +12,6 @@ namespace terrane::core {
 GrowthStage StageAt(const GrowthStage& early, const GrowthStage& full,
                     double stage);
 
-// How far petal n of `count` is open, in [0, 1]: 0 for the buds, n <= Nb, and
-// Sa (n - Nb) / (N - Nb) for the others.
-double Openness(const GrowthStage& stage, double n, double count);
-
 // Where an organ sits.
 struct Seat {
   double azimuth_deg = 0;
@@ -26,6 +22,11 @@ struct Seat {
   // The n of the growth stage: of a whorl, that of its layer's last organ.
   double rank = 1;
 };
+
+// How far the petal of a seat is open, in [0, 1]: 0 for the buds, n <= Nb, and
+// Sa (n - Nb) / (N - Nb) for the others of N. A whorl has no buds.
+double Openness(const GrowthStage& stage, ArrangementKind kind, double n,
+                double count);
 
 // Of organ n of `count`, n from 1. `spread` multiplies radii and heights.
 Seat SeatOf(const Arrangement& arrangement, int n, int count, double spread);

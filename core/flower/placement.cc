@@ -250,7 +250,8 @@ Placement::Local Placement::PetalRow(const Plant& plant, std::size_t index,
   const int n = static_cast<int>(row) + 1;
   const Seat seat =
       SeatOf(group.arrangement, n, group.count, plant.stage.spread);
-  const double openness = Openness(plant.stage, seat.rank, group.count);
+  const double openness =
+      Openness(plant.stage, group.arrangement.kind, seat.rank, group.count);
   const double azimuth = seat.azimuth_deg + kPetalAzimuth * chance.Varied(2);
   const double angle = Mix(group.angle_deg, group.open_angle_deg, openness) +
                        kPetalAngle * chance.Varied(3);

@@ -38,6 +38,9 @@ void AddBlades(const FlowerSpec& spec, const BladeSpec& blade,
 double LargestVariance(const FlowerSpec& spec, const BladeSpec& blade,
                        std::uint32_t salt, const PerlinNoise& noise) {
   double largest = 0;
+  Relief relief = blade.relief;
+  relief.gain *=
+      std::max(blade.open.relief, blade.steps > 1 ? blade.closed.relief : 0);
   const int sketches = static_cast<int>(blade.sketches.size());
   for (int sketch = 0; sketch < sketches; ++sketch) {
     for (int variant = 0; variant < blade.variants; ++variant) {
@@ -46,7 +49,7 @@ double LargestVariance(const FlowerSpec& spec, const BladeSpec& blade,
       largest = std::max(
           largest, NormalVariance(
                        noise, blade.sketches[static_cast<std::size_t>(sketch)],
-                       blade.relief, offset));
+                       relief, offset));
     }
   }
   return largest;

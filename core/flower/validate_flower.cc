@@ -78,6 +78,7 @@ void ValidateShape(const Path& path, const BladeShape& shape, double widest,
   checks->Number(path.Field("base_curl_deg"), shape.base_curl_deg, kTurns);
   checks->Number(path.Field("tip_curl_deg"), shape.tip_curl_deg, kTurns);
   checks->Number(path.Field("flare"), shape.flare, kSigned);
+  checks->Number(path.Field("relief"), shape.relief, {0, 10});
 }
 
 void ValidateColors(const Path& path, const BladeColors& colors,

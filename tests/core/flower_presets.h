@@ -10,10 +10,22 @@
 
 namespace terrane::core {
 
-// "rose", "pansy", "water-lily", "sunflower", "daisy", "tulip", "lily",
-// "chrysanthemum", "leaf", "petal". In a fixed order.
-std::vector<std::string> FlowerPresetNames();
+// Of the paper: figures 9 and 11, 10, 7, 6.
+FlowerSpec Rose();
+FlowerSpec Pansy();
+FlowerSpec WaterLily();
+FlowerSpec Sunflower();
+// One blade, lying flat: its figures 4 and 5.
+FlowerSpec Leaf();
+FlowerSpec Petal();
+// Ours.
+FlowerSpec Daisy();
+FlowerSpec Tulip();
+FlowerSpec Lily();
+FlowerSpec Chrysanthemum();
 
+// All of them, in a fixed order: "rose", "water-lily" and so on.
+std::vector<std::string> FlowerPresetNames();
 // `name` is one of them.
 FlowerSpec FlowerPreset(const std::string& name);
 

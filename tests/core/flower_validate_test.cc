@@ -121,6 +121,8 @@ const std::vector<FlowerRule> kBladeRules = {
      "petals[0].blade.open.tip_curl_deg", "must be in [-720, 720], got nan"},
     {"Flare", [](FlowerSpec* s) { BladeOf(s).open.flare = 2; },
      "petals[0].blade.open.flare", "must be in [-1, 1], got 2"},
+    {"ShapeRelief", [](FlowerSpec* s) { BladeOf(s).closed.relief = -1; },
+     "petals[0].blade.closed.relief", "must be in [0, 10], got -1"},
     {"Color", [](FlowerSpec* s) { BladeOf(s).material.base_color[1] = 2; },
      "petals[0].blade.material.base_color.green", "must be in [0, 1], got 2"},
     {"Specular", [](FlowerSpec* s) { BladeOf(s).material.specular = 1; },
