@@ -77,6 +77,7 @@ core::BladeShape ReadShape(const v1::BladeShape& message) {
   shape.base_curl_deg = message.base_curl_deg();
   shape.tip_curl_deg = message.tip_curl_deg();
   shape.flare = message.flare();
+  if (message.has_relief()) shape.relief = message.relief();
   return shape;
 }
 

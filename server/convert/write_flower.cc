@@ -37,6 +37,7 @@ void WriteShape(const core::BladeShape& shape, v1::BladeShape* message) {
   message->set_base_curl_deg(shape.base_curl_deg);
   message->set_tip_curl_deg(shape.tip_curl_deg);
   message->set_flare(shape.flare);
+  message->set_relief(shape.relief);
 }
 
 void WriteColors(const core::BladeColors& colors, v1::BladeColors* message) {
