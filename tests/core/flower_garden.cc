@@ -12,9 +12,11 @@ FlowerSpec Daisy() {
   daisy.petals[1].arrangement.radius = 0.2;
   daisy.petals[1].arrangement.height = -0.08;
   daisy.petals[1].open_angle_deg = 5;
+  SolidGroup disc = MakeReceptacle(0.2, 0.36, 0.02);
+  disc.material = MakeMaterial("disc", {0.70f, 0.42f, 0.02f});
   daisy.solids = {MakeDiscFlorets(180, 0.03, 0.16, {0.75f, 0.45f, 0.02f},
                                   {0.95f, 0.62f, 0.02f}),
-                  MakeReceptacle(0.2, 0.38, -0.02)};
+                  disc, MakeReceptacle(0.2, 0.34, -0.06)};
   daisy.leaves = {MakeLeaves(5, 0.18, 1.4)};
   daisy.leaves[0].to = 0.5;
   daisy.stem = MakeStem(7, 0.06);

@@ -207,10 +207,11 @@ FlowerSpec Sunflower() {
   sunflower.petals[1].arrangement.radius = 0.8;
   sunflower.petals[1].arrangement.height = -0.12;
   sunflower.petals[1].open_angle_deg = 0;
-  SolidGroup back = MakeReceptacle(0.2, 0.95, -0.12);
+  SolidGroup disc = MakeReceptacle(0.1, 0.93, -0.01);
+  disc.material = MakeMaterial("disc", {0.10f, 0.045f, 0.012f});
   sunflower.solids = {MakeDiscFlorets(1000, 0.03, 0.06, {0.10f, 0.04f, 0.01f},
                                       {0.26f, 0.11f, 0.02f}),
-                      back};
+                      disc, MakeReceptacle(0.26, 0.9, -0.15)};
   sunflower.leaves = {MakeLeaves(7, 0.42, 2.2)};
   sunflower.leaves[0].stalk = 0.35;
   sunflower.stem = MakeStem(14, 0.2);
