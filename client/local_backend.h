@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "client/backend.h"
+#include "client/local_backend_flowers.h"
 #include "client/local_backend_trees.h"
 #include "server/actor/actor.h"
 
@@ -53,11 +54,13 @@ class LocalBackend : public Backend {
   absl::StatusOr<std::string> UploadSpotTable(
       std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
   TreeBackend& trees() override { return trees_; }
+  FlowerBackend& flowers() override { return flowers_; }
 
  private:
   int threads_;
   std::unique_ptr<server::Actor> actor_;
   LocalTrees trees_;
+  LocalFlowers flowers_;
 };
 
 }  // namespace terrane::client

@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
   const Interrupt interrupt;
 
   CLI::App app(
-      "Fractal terrain, surfaces and trees: from a server, or made here with "
+      "Fractal terrain, surfaces, trees and flowers: from a server, or made "
+      "here with "
       "--local.",
       "terrane");
   app.set_version_flag("--version", TERRANE_VERSION);
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
   AddHeightsCommand(&app, &action);
   AddSurfaceCommand(&app, &action);
   AddTreeCommand(&app, &action);
+  AddFlowerCommand(&app, &action);
   AddRenderCommand(&app, &action);
   AddVerifyCommand(&app, &action);
   AddPresetsCommand(&app, &action);

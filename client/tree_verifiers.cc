@@ -1,61 +1,12 @@
 #include "client/tree_verifiers.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
-#include <cstring>
-#include <initializer_list>
-#include <memory>
 #include <string>
+
+#include "client/column_check.h"
 
 namespace terrane::client {
 namespace {
-
-// A column of a block and the bytes that it must have.
-struct Column {
-  const char* name;
-  const std::string& bytes;
-  std::int64_t expected;
-};
-
-absl::Status Wrong(const std::string& block, const std::string& what) {
-  return absl::DataLossError(block + ": " + what);
-}
-
-absl::Status CheckColumns(const std::string& block,
-                          std::initializer_list<Column> columns,
-                          std::uint64_t checksum) {
-  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(
-      XXH3_createState(), &XXH3_freeState);
-  XXH3_64bits_reset(state.get());
-  for (const Column& column : columns) {
-    const auto size = static_cast<std::int64_t>(column.bytes.size());
-    if (size != column.expected) {
-      return Wrong(block, "has " + std::to_string(size) + " bytes of " +
-                              column.name + ", expected " +
-                              std::to_string(column.expected));
-    }
-    XXH3_64bits_update(state.get(), column.bytes.data(), column.bytes.size());
-  }
-  if (XXH3_64bits_digest(state.get()) != checksum) {
-    return Wrong(block, "does not match its checksum");
-  }
-  return absl::OkStatus();
-}
-
-absl::Status CheckPlace(const std::string& block, std::int64_t came,
-                        std::int64_t expected) {
-  if (came == expected) return absl::OkStatus();
-  return Wrong(block, "came where " + std::to_string(expected) + " belongs");
-}
-
-std::uint32_t ElementOf(const std::string& column, std::int64_t index) {
-  std::uint32_t value = 0;
-  std::memcpy(&value,
-              column.data() + static_cast<std::size_t>(index) * sizeof(value),
-              sizeof(value));
-  return value;
-}
 
 // A parent's row is before its child's; row 0 is the trunk.
 absl::Status CheckParents(const std::string& block,
@@ -63,8 +14,8 @@ absl::Status CheckParents(const std::string& block,
   for (std::int64_t k = 0; k < rows.rows(); ++k) {
     const std::int64_t row = rows.first_row() + k;
     if (row > 0 && ElementOf(rows.parents(), k) >= row) {
-      return Wrong(block, "row " + std::to_string(row) +
-                              " has a parent that is not before it");
+      return WrongBlock(block, "row " + std::to_string(row) +
+                                   " has a parent that is not before it");
     }
   }
   return absl::OkStatus();
@@ -118,9 +69,9 @@ absl::Status CheckTriangles(const std::string& name,
   for (std::int64_t k = 0; k < count; ++k) {
     const std::int64_t vertex = ElementOf(block.indices(), k);
     if (vertex >= block.vertices()) {
-      return Wrong(name, "has a triangle with vertex " +
-                             std::to_string(vertex) + " of " +
-                             std::to_string(block.vertices()));
+      return WrongBlock(name, "has a triangle with vertex " +
+                                  std::to_string(vertex) + " of " +
+                                  std::to_string(block.vertices()));
     }
   }
   return absl::OkStatus();
@@ -157,7 +108,7 @@ absl::Status TubesVerifier::CheckTile(const v1::TubeBlock& block) {
   const std::string name = "tubes " + std::to_string(block.index());
   absl::Status status = CheckPlace(name, block.index(), next_index_);
   if (status.ok() && block.indices().size() % 12 != 0) {
-    status = Wrong(name, "has a part of a triangle");
+    status = WrongBlock(name, "has a part of a triangle");
   }
   if (status.ok()) {
     const std::int64_t count = block.vertices();

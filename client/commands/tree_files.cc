@@ -12,9 +12,9 @@
 #include "client/output_file.h"
 #include "client/render/skeleton_view.h"
 #include "client/render/surface_view.h"
+#include "client/scene_files.h"
 #include "client/tree_rows.h"
 #include "core/codec/image_codec.h"
-#include "core/codec/obj.h"
 #include "core/codec/svg.h"
 #include "core/codec/swc.h"
 #include "core/codec/tree_csv.h"
@@ -141,18 +141,6 @@ Picture DrawScene(const core::Scene& scene, const ChosenTree& tree, int size) {
   return RenderSurface(MergedMesh(scene), {}, view);
 }
 
-absl::Status WriteObj(const std::string& path, const core::Scene& scene,
-                      TreeSummary* summary) {
-  const std::filesystem::path library =
-      std::filesystem::path(path).replace_extension(".mtl");
-  const absl::StatusOr<std::string> text =
-      core::EncodeObj(scene, library.filename().string());
-  if (!text.ok()) return text.status();
-  const absl::Status written = WriteBytes(path, *text, summary);
-  if (!written.ok()) return written;
-  return WriteBytes(library.string(), core::EncodeMtl(scene), summary);
-}
-
 absl::Status WriteModels(TreeFormat format, const ChosenTree& tree,
                          const TreeFileOptions& options, TreeBackend* backend,
                          std::stop_token stop, TreeSummary* summary) {
@@ -180,7 +168,11 @@ absl::Status WriteModels(TreeFormat format, const ChosenTree& tree,
                         summary);
   }
   if (format == TreeFormat::kObj) {
-    return WriteObj(options.out, scenes.front(), summary);
+    std::vector<std::string> files;
+    const absl::Status written =
+        WriteScene(options.out, scenes.front(), {}, &files);
+    for (const std::string& file : files) summary->add_files(file);
+    return written;
   }
   const absl::StatusOr<std::string> glb =
       core::EncodeGlb(scenes, GlbOptionsOf(options, models.front().header));

@@ -1,5 +1,6 @@
 #include "server/actor/actor.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,7 +58,8 @@ class TerrainActor : public Actor {
         terrains_(limits.prepared_bytes),
         meter_(std::make_shared<CostMeter>()),
         surfaces_(limits),
-        trees_(limits) {}
+        trees_(limits),
+        flowers_(limits) {}
 
   absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
       const v1::StreamTilesRequest& request, std::stop_token stop) override;
@@ -75,6 +77,7 @@ class TerrainActor : public Actor {
   v1::GetServerInfoResponse GetServerInfo() override;
   const SurfaceMaker& surfaces() const override { return surfaces_; }
   const TreeMaker& trees() const override { return trees_; }
+  const FlowerMaker& flowers() const override { return flowers_; }
   std::unique_ptr<RasterUpload> BeginRasterUpload() override {
     return MakeRasterUpload(limits_, &rasters_);
   }
@@ -112,6 +115,7 @@ class TerrainActor : public Actor {
   const std::shared_ptr<CostMeter> meter_;
   const SurfaceMaker surfaces_;
   const TreeMaker trees_;
+  const FlowerMaker flowers_;
 };
 
 // The spec to plan with, or null when it has violations.
@@ -375,6 +379,8 @@ v1::ServerLimits WriteLimits(const Limits& limits) {
   message.set_max_tree_bytes(limits.tree.max_bytes);
   message.set_max_forest_trees(limits.max_forest_trees);
   message.set_max_forest_segments(limits.max_forest_segments);
+  message.set_max_flower_prototype_bytes(limits.flower.max_prototype_bytes);
+  message.set_max_flower_instances(limits.flower.max_instances);
   return message;
 }
 
@@ -398,10 +404,15 @@ v1::GetServerInfoResponse TerrainActor::GetServerInfo() {
   *info.mutable_limits() = WriteLimits(limits_);
   info.set_surface_revision(core::kSurfaceRevision);
   info.set_tree_revision(core::kTreeRevision);
+  info.set_flower_revision(core::kFlowerRevision);
   AddSummaries(Presets(), "terrain", &info);
-  // After all others, by name as well.
   AddSummaries(SurfacePresets(), "surface", &info);
   AddSummaries(TreePresets(), "tree", &info);
+  AddSummaries(FlowerPresets(), "flower", &info);
+  std::sort(info.mutable_presets()->begin(), info.mutable_presets()->end(),
+            [](const v1::PresetSummary& a, const v1::PresetSummary& b) {
+              return a.name() < b.name();
+            });
   return info;
 }
 

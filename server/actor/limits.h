@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "core/flower/validate_flower.h"
 #include "core/grid/lattice_window.h"
 #include "core/terrain/validate.h"
 #include "core/tree/validate.h"
@@ -26,6 +27,7 @@ struct Limits {
   core::TreeLimits tree;
   std::int64_t max_forest_trees = 1'000'000;
   std::int64_t max_forest_segments = 1'000'000'000;
+  core::FlowerLimits flower;
 };
 
 }  // namespace terrane::server

@@ -15,9 +15,14 @@ namespace {
 // Folders of presets that are no terrains.
 constexpr std::string_view kSurfaceFolder = "surface/";
 constexpr std::string_view kTreeFolder = "tree/";
+constexpr std::string_view kFlowerFolder = "flower/";
 
 bool IsTerrain(std::string_view name) {
-  return !name.starts_with(kSurfaceFolder) && !name.starts_with(kTreeFolder);
+  for (const std::string_view folder :
+       {kSurfaceFolder, kTreeFolder, kFlowerFolder}) {
+    if (name.starts_with(folder)) return false;
+  }
+  return true;
 }
 
 // Those in `folder`, or the terrains without one.
@@ -72,6 +77,13 @@ const std::map<std::string, v1::TreePreset>& TreePresets() {
   return *presets;
 }
 
+const std::map<std::string, v1::FlowerPreset>& FlowerPresets() {
+  static const auto* const presets =
+      new std::map<std::string, v1::FlowerPreset>(
+          ParsePresets<v1::FlowerPreset>(kFlowerFolder));
+  return *presets;
+}
+
 absl::StatusOr<const v1::TerrainPreset*> FindPreset(const std::string& name) {
   return Find(Presets(), name);
 }
@@ -83,6 +95,11 @@ absl::StatusOr<const v1::SurfacePreset*> FindSurfacePreset(
 
 absl::StatusOr<const v1::TreePreset*> FindTreePreset(const std::string& name) {
   return Find(TreePresets(), name);
+}
+
+absl::StatusOr<const v1::FlowerPreset*> FindFlowerPreset(
+    const std::string& name) {
+  return Find(FlowerPresets(), name);
 }
 
 }  // namespace terrane::server

@@ -28,7 +28,8 @@ class TreeRun : public HeadedRun<v1::StreamTreeResponse, v1::TreeHeader> {
   TreeRun(ChosenTree chosen, std::int64_t from_row,
           std::shared_ptr<CostMeter> meter)
       : HeadedRun(std::move(chosen.header)),
-        generator_(std::move(chosen.tree), from_row, {}, std::move(meter)) {}
+        generator_(std::move(chosen.tree), from_row, {}, std::move(meter)),
+        from_row_(from_row) {}
 
  private:
   bool AllMade() const override { return generator_.Done(); }
@@ -38,11 +39,15 @@ class TreeRun : public HeadedRun<v1::StreamTreeResponse, v1::TreeHeader> {
     const absl::Status status = generator_.Next(std::move(stop));
     if (!status.ok()) return status;
     SetItems(static_cast<std::int64_t>(generator_.block().rows()));
-    WriteSegments(generator_.block(), message->mutable_segments());
+    v1::SegmentRows* const rows = message->mutable_segments();
+    WriteSegments(generator_.block(), rows);
+    // Resumed at the end: a block of no rows, where they would be.
+    if (rows->rows() == 0) rows->set_first_row(from_row_);
     return absl::OkStatus();
   }
 
   MeteredGenerator generator_;
+  const std::int64_t from_row_;
 };
 
 class LeafRun : public HeadedRun<v1::StreamTreeLeavesResponse, v1::TreeHeader> {

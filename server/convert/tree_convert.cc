@@ -6,6 +6,7 @@
 #include "core/tree/estimate.h"
 #include "server/convert/column_bytes.h"
 #include "server/convert/enum_table.h"
+#include "server/convert/non_zero.h"
 
 namespace terrane::server {
 namespace {
@@ -34,12 +35,6 @@ constexpr EnumTable<v1::TubeEnds, core::TubeEnds, 3> kTubeEnds{{
     {v1::TUBE_ENDS_OPEN, core::TubeEnds::kOpen},
     {v1::TUBE_ENDS_CLOSED, core::TubeEnds::kClosed},
 }};
-
-// A field where 0 means the default.
-template <typename Number>
-void ReadNonZero(Number value, Number* field) {
-  if (value != 0) *field = value;
-}
 
 std::optional<core::Wanted> ReadFeature(v1::Wanted value, const Path& path,
                                         core::Violations* violations) {

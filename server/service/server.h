@@ -16,6 +16,7 @@
 #include "absl/status/statusor.h"
 #include "server/actor/actor.h"
 #include "server/service/call_context.h"
+#include "server/service/flower_service.h"
 #include "server/service/info_service.h"
 #include "server/service/raster_service.h"
 #include "server/service/spot_table_service.h"
@@ -62,6 +63,7 @@ class Server {
   TerrainServiceImpl terrain_service_;
   SurfaceServiceImpl surface_service_;
   TreeServiceImpl tree_service_;
+  FlowerServiceImpl flower_service_;
   RasterServiceImpl raster_service_;
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;

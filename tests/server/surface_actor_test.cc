@@ -19,15 +19,16 @@ using ::testing::HasSubstr;
 class SurfaceActorTest : public ::testing::Test {
  protected:
   std::shared_ptr<const SurfaceJob> Open(const std::string& json) {
-    auto job = actor_->surfaces().Open(FromJson<v1::StreamSurfaceRequest>(json));
+    auto job =
+        actor_->surfaces().Open(FromJson<v1::StreamSurfaceRequest>(json));
     EXPECT_TRUE(job.ok()) << job.status();
     return *std::move(job);
   }
   std::string Error(const std::string& json) {
-    return std::string(
-        actor_->surfaces().Open(FromJson<v1::StreamSurfaceRequest>(json))
-            .status()
-            .message());
+    return std::string(actor_->surfaces()
+                           .Open(FromJson<v1::StreamSurfaceRequest>(json))
+                           .status()
+                           .message());
   }
   static v1::StreamSurfaceResponse Tile(const SurfaceJob& job,
                                         std::int64_t index) {
