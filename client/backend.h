@@ -16,6 +16,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/spot_table.h"
+#include "client/tree_backend.h"
 #include "core/grid/raster.h"
 #include "terrane/v1/info.pb.h"
 #include "terrane/v1/raster.pb.h"
@@ -82,6 +83,9 @@ class Backend {
   // The same for a table of spot heights.
   virtual absl::StatusOr<std::string> UploadSpotTable(
       std::shared_ptr<const SpotTable> table, std::stop_token stop) = 0;
+
+  // Lives as long as this.
+  virtual TreeBackend& trees() = 0;
 };
 
 }  // namespace terrane::client

@@ -10,6 +10,7 @@
 #include "core/surface/validate_surface.h"
 #include "core/terrain/spec_checks.h"
 #include "core/terrain/spot_heights.h"
+#include "core/tree/tree_spec.h"
 #include "server/actor/cost_meter.h"
 #include "server/actor/error_reason.h"
 #include "server/actor/presets.h"
@@ -55,7 +56,8 @@ class TerrainActor : public Actor {
         spot_tables_(kSpotTables * SpotTableBytes(limits.recipe.max_spots)),
         terrains_(limits.prepared_bytes),
         meter_(std::make_shared<CostMeter>()),
-        surfaces_(limits) {}
+        surfaces_(limits),
+        trees_(limits) {}
 
   absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
       const v1::StreamTilesRequest& request, std::stop_token stop) override;
@@ -71,18 +73,8 @@ class TerrainActor : public Actor {
   absl::StatusOr<v1::GetPresetResponse> GetPreset(
       const v1::GetPresetRequest& request) override;
   v1::GetServerInfoResponse GetServerInfo() override;
-  absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
-      const v1::StreamSurfaceRequest& request) override {
-    return surfaces_.Open(request);
-  }
-  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
-      const v1::EstimateSurfaceRequest& request) override {
-    return surfaces_.Estimate(request);
-  }
-  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
-      const v1::GetSurfacePresetRequest& request) override {
-    return surfaces_.GetPreset(request);
-  }
+  const SurfaceMaker& surfaces() const override { return surfaces_; }
+  const TreeMaker& trees() const override { return trees_; }
   std::unique_ptr<RasterUpload> BeginRasterUpload() override {
     return MakeRasterUpload(limits_, &rasters_);
   }
@@ -119,6 +111,7 @@ class TerrainActor : public Actor {
   TerrainCache terrains_;
   const std::shared_ptr<CostMeter> meter_;
   const SurfaceMaker surfaces_;
+  const TreeMaker trees_;
 };
 
 // The spec to plan with, or null when it has violations.
@@ -378,6 +371,10 @@ v1::ServerLimits WriteLimits(const Limits& limits) {
   message.set_prepared_bytes(limits.prepared_bytes);
   message.set_max_surface_side(core::kMaxGridSide);
   message.set_max_weight_rules(core::kMaxWeightRules);
+  message.set_max_tree_segments(limits.tree.max_segments);
+  message.set_max_tree_bytes(limits.tree.max_bytes);
+  message.set_max_forest_trees(limits.max_forest_trees);
+  message.set_max_forest_segments(limits.max_forest_segments);
   return message;
 }
 
@@ -400,9 +397,11 @@ v1::GetServerInfoResponse TerrainActor::GetServerInfo() {
   info.set_workers(workers_);
   *info.mutable_limits() = WriteLimits(limits_);
   info.set_surface_revision(core::kSurfaceRevision);
+  info.set_tree_revision(core::kTreeRevision);
   AddSummaries(Presets(), "terrain", &info);
   // After all others, by name as well.
   AddSummaries(SurfacePresets(), "surface", &info);
+  AddSummaries(TreePresets(), "tree", &info);
   return info;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/grid/lattice_window.h"
 #include "core/terrain/validate.h"
+#include "core/tree/validate.h"
 
 namespace terrane::server {
 
@@ -22,6 +23,9 @@ struct Limits {
   std::int64_t raster_store_bytes = std::int64_t{1} << 30;
   int max_concurrent_streams = 64;
   std::int64_t prepared_bytes = std::int64_t{2} << 30;
+  core::TreeLimits tree;
+  std::int64_t max_forest_trees = 1'000'000;
+  std::int64_t max_forest_segments = 1'000'000'000;
 };
 
 }  // namespace terrane::server

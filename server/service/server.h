@@ -21,6 +21,7 @@
 #include "server/service/spot_table_service.h"
 #include "server/service/surface_service.h"
 #include "server/service/terrain_service.h"
+#include "server/service/tree_service.h"
 
 namespace terrane::server {
 
@@ -60,6 +61,7 @@ class Server {
   ServiceParts parts_;
   TerrainServiceImpl terrain_service_;
   SurfaceServiceImpl surface_service_;
+  TreeServiceImpl tree_service_;
   RasterServiceImpl raster_service_;
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;

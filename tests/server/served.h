@@ -18,6 +18,7 @@
 #include "terrane/v1/spot_table.grpc.pb.h"
 #include "terrane/v1/surface.grpc.pb.h"
 #include "terrane/v1/terrain.grpc.pb.h"
+#include "terrane/v1/tree.grpc.pb.h"
 
 namespace terrane::server {
 
@@ -37,6 +38,7 @@ class Served {
         grpc::InsecureChannelCredentials(), ClientArguments());
     terrain = v1::TerrainService::NewStub(channel_);
     surface = v1::SurfaceService::NewStub(channel_);
+    tree = v1::TreeService::NewStub(channel_);
     raster = v1::RasterService::NewStub(channel_);
     spot_table = v1::SpotTableService::NewStub(channel_);
     info = v1::InfoService::NewStub(channel_);
@@ -52,6 +54,7 @@ class Served {
 
   std::unique_ptr<v1::TerrainService::Stub> terrain;
   std::unique_ptr<v1::SurfaceService::Stub> surface;
+  std::unique_ptr<v1::TreeService::Stub> tree;
   std::unique_ptr<v1::RasterService::Stub> raster;
   std::unique_ptr<v1::SpotTableService::Stub> spot_table;
   std::unique_ptr<v1::InfoService::Stub> info;

@@ -1,0 +1,30 @@
+// What a flower costs, before any work: exact counts from the spec alone, in
+// checked arithmetic (a product beyond 2^63 - 1 stays there).
+//
+// Pure functions of a spec whose counts are in their ranges; safe from any
+// thread.
+#ifndef TERRANE_CORE_FLOWER_ESTIMATE_FLOWER_H_
+#define TERRANE_CORE_FLOWER_ESTIMATE_FLOWER_H_
+
+#include <cstdint>
+
+#include "core/flower/flower_spec.h"
+
+namespace terrane::core {
+
+struct FlowerEstimate {
+  // Of the prototypes together; bytes of their columns.
+  std::int64_t prototypes = 0;
+  std::int64_t vertices = 0;
+  std::int64_t triangles = 0;
+  std::int64_t prototype_bytes = 0;
+  // Rows of the whole bed, and the bytes of their columns.
+  std::int64_t instances = 0;
+  std::int64_t instance_bytes = 0;
+};
+
+FlowerEstimate EstimateFlower(const FlowerSpec& spec);
+
+}  // namespace terrane::core
+
+#endif  // TERRANE_CORE_FLOWER_ESTIMATE_FLOWER_H_
