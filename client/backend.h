@@ -15,6 +15,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/render_backend.h"
 #include "client/spot_table.h"
 #include "client/tree_backend.h"
 #include "core/grid/raster.h"
@@ -84,8 +85,9 @@ class Backend {
   virtual absl::StatusOr<std::string> UploadSpotTable(
       std::shared_ptr<const SpotTable> table, std::stop_token stop) = 0;
 
-  // Lives as long as this.
+  // Live as long as this.
   virtual TreeBackend& trees() = 0;
+  virtual RenderBackend& renders() = 0;
 };
 
 }  // namespace terrane::client

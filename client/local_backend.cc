@@ -130,7 +130,8 @@ absl::Status HandOut(const Job& job, MakeTile<Tile> make, int threads,
 LocalBackend::LocalBackend(int threads)
     : threads_(std::max(threads, 1)),
       actor_(server::MakeActor(server::Limits(), threads_)),
-      trees_(&actor_->trees()) {}
+      trees_(&actor_->trees()),
+      renders_(&actor_->renders()) {}
 
 absl::Status LocalBackend::StreamTiles(const v1::StreamTilesRequest& request,
                                        const OnHeader& on_header,

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "client/backend.h"
+#include "client/local_backend_renders.h"
 #include "client/local_backend_trees.h"
 #include "server/actor/actor.h"
 
@@ -53,11 +54,13 @@ class LocalBackend : public Backend {
   absl::StatusOr<std::string> UploadSpotTable(
       std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
   TreeBackend& trees() override { return trees_; }
+  RenderBackend& renders() override { return renders_; }
 
  private:
   int threads_;
   std::unique_ptr<server::Actor> actor_;
   LocalTrees trees_;
+  LocalRenders renders_;
 };
 
 }  // namespace terrane::client

@@ -13,6 +13,7 @@
 
 #include "client/backend.h"
 #include "client/remote_caller.h"
+#include "client/remote_renders.h"
 #include "client/remote_trees.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
@@ -60,6 +61,7 @@ class RemoteBackend : public Backend {
   absl::StatusOr<std::string> UploadSpotTable(
       std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
   TreeBackend& trees() override { return trees_; }
+  RenderBackend& renders() override { return renders_; }
 
  private:
   using Attempt = RemoteCaller::Attempt;
@@ -83,6 +85,7 @@ class RemoteBackend : public Backend {
   std::unique_ptr<v1::SpotTableService::Stub> spot_table_;
   std::unique_ptr<v1::InfoService::Stub> info_;
   RemoteTrees trees_;
+  RemoteRenders renders_;
   // What was uploaded so far, by id.
   std::map<std::string, UploadContent> uploads_;
 };

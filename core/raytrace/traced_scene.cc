@@ -11,6 +11,7 @@
 
 #include "core/base/violations.h"
 #include "core/mesh/float3.h"
+#include "core/mesh/rotation.h"
 
 namespace terrane::core {
 namespace {
@@ -20,13 +21,6 @@ constexpr std::int64_t kBytesPerVertex = 16;
 constexpr std::int64_t kBytesPerTriangle = 200;
 constexpr std::int64_t kBytesPerInstance = 1100;
 constexpr std::int64_t kBytesPerScene = 4'000'000;
-
-// v turned by a unit quaternion.
-Float3 Rotated(const Quaternion& q, Float3 v) {
-  const Float3 axis = {q.x, q.y, q.z};
-  const Float3 twice = 2.0f * Cross(axis, v);
-  return v + q.w * twice + Cross(axis, twice);
-}
 
 Float3 Quotient(Float3 a, Float3 b) {
   return {a.x / b.x, a.y / b.y, a.z / b.z};

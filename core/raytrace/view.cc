@@ -15,6 +15,7 @@ constexpr float kFilled = 0.92f;
 // In radii of the box.
 constexpr float kFadeBegin = 3;
 constexpr float kFadeEnd = 14;
+constexpr float kGroundGap = 1e-3f;
 
 double Radians(double degrees) { return degrees * (std::numbers::pi / 180); }
 
@@ -89,7 +90,8 @@ AreaLight PlaceLight(const Bounds& bounds, const LightPlace& place) {
 Ground PlaceGround(const Bounds& bounds, const Material& material) {
   const Float3 centre = CentreOf(bounds);
   const float radius = RadiusOf(bounds);
-  return {bounds.low.z,
+  // Lower than what lies flat at the bottom of the box, by what nobody sees.
+  return {bounds.low.z - kGroundGap * radius,
           material,
           {centre.x, centre.y},
           kFadeBegin * radius,

@@ -20,6 +20,7 @@
 #include "absl/status/statusor.h"
 #include "core/terrain/terrain.h"
 #include "server/actor/limits.h"
+#include "server/actor/render_maker.h"
 #include "server/actor/surface_job.h"
 #include "server/actor/tree_maker.h"
 #include "terrane/v1/info.pb.h"
@@ -87,6 +88,7 @@ class Actor {
   // The other generators; they live as long as the actor.
   virtual const SurfaceMaker& surfaces() const = 0;
   virtual const TreeMaker& trees() const = 0;
+  virtual const RenderMaker& renders() const = 0;
 
   virtual std::unique_ptr<RasterUpload> BeginRasterUpload() = 0;
   virtual absl::StatusOr<v1::GetRasterResponse> GetRaster(

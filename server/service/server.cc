@@ -28,6 +28,7 @@ Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
       terrain_service_(parts_),
       surface_service_(parts_),
       tree_service_(parts_),
+      render_service_(parts_),
       raster_service_(parts_),
       spot_table_service_(parts_),
       info_service_(parts_) {}
@@ -45,6 +46,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   builder.RegisterService(&server->terrain_service_);
   builder.RegisterService(&server->surface_service_);
   builder.RegisterService(&server->tree_service_);
+  builder.RegisterService(&server->render_service_);
   builder.RegisterService(&server->raster_service_);
   builder.RegisterService(&server->spot_table_service_);
   builder.RegisterService(&server->info_service_);
@@ -74,6 +76,7 @@ void Server::SetServing(bool serving) {
   for (const char* name : {"", v1::TerrainService::service_full_name(),
                            v1::SurfaceService::service_full_name(),
                            v1::TreeService::service_full_name(),
+                           v1::RenderService::service_full_name(),
                            v1::RasterService::service_full_name(),
                            v1::SpotTableService::service_full_name(),
                            v1::InfoService::service_full_name()}) {

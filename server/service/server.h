@@ -18,6 +18,7 @@
 #include "server/service/call_context.h"
 #include "server/service/info_service.h"
 #include "server/service/raster_service.h"
+#include "server/service/render_service.h"
 #include "server/service/spot_table_service.h"
 #include "server/service/surface_service.h"
 #include "server/service/terrain_service.h"
@@ -62,6 +63,7 @@ class Server {
   TerrainServiceImpl terrain_service_;
   SurfaceServiceImpl surface_service_;
   TreeServiceImpl tree_service_;
+  RenderServiceImpl render_service_;
   RasterServiceImpl raster_service_;
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;

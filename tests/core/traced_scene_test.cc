@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "core/mesh/rotation.h"
 #include "core/raytrace/quick_math.h"
 #include "core/raytrace/samples.h"
 #include "core/raytrace/tone.h"
@@ -85,6 +86,22 @@ TEST(TracedScene, InstancesAreWhatTheyStandFor) {
     EXPECT_GT(Dot(a.shading_normal, b.shading_normal), 0.99f);
   }
   EXPECT_GT(hits, 500);
+}
+
+TEST(Rotation, TakesTheAxesWhereItWasAsked) {
+  // One for each component that can be the largest.
+  for (const Quaternion& turn : {Quaternion{0.1f, 0.1f, -0.1f, 0.98488f},
+                                 Quaternion{-0.9f, 0.3f, 0.1f, 0.3f},
+                                 Quaternion{0.2f, 0.9f, -0.3f, 0.24495f},
+                                 Quaternion{0.3f, -0.1f, 0.94868f, 0}}) {
+    const Float3 axes[] = {Turned(turn, {1, 0, 0}), Turned(turn, {0, 1, 0}),
+                           Turned(turn, {0, 0, 1})};
+    const Quaternion found = RotationTo(axes[0], axes[1], axes[2]);
+    for (const Float3 v : {Float3{1, 0, 0}, Float3{0, 1, 0}, Float3{0, 0, 1}}) {
+      const Float3 off = Rotated(found, v) - Turned(turn, v);
+      EXPECT_LT(Length(off), 1e-4f);
+    }
+  }
 }
 
 TEST(TracedScene, OneSideIsSeenOrBothButBothCastShadows) {

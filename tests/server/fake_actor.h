@@ -128,6 +128,7 @@ class FakeActor : public Actor {
   v1::GetServerInfoResponse GetServerInfo() override { return {}; }
   const SurfaceMaker& surfaces() const override { return surfaces_; }
   const TreeMaker& trees() const override { return trees_; }
+  const RenderMaker& renders() const override { return renders_; }
   std::unique_ptr<RasterUpload> BeginRasterUpload() override { return nullptr; }
   absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest&) override {
@@ -145,6 +146,7 @@ class FakeActor : public Actor {
   FakeTiles tiles_;
   const SurfaceMaker surfaces_{Limits()};
   const TreeMaker trees_{Limits()};
+  const RenderMaker renders_{this, Limits()};
 };
 
 // Waits up to ten seconds for a condition that other threads bring about.

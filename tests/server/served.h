@@ -15,6 +15,7 @@
 #include "server/service/server.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
+#include "terrane/v1/render.grpc.pb.h"
 #include "terrane/v1/spot_table.grpc.pb.h"
 #include "terrane/v1/surface.grpc.pb.h"
 #include "terrane/v1/terrain.grpc.pb.h"
@@ -39,6 +40,7 @@ class Served {
     terrain = v1::TerrainService::NewStub(channel_);
     surface = v1::SurfaceService::NewStub(channel_);
     tree = v1::TreeService::NewStub(channel_);
+    render = v1::RenderService::NewStub(channel_);
     raster = v1::RasterService::NewStub(channel_);
     spot_table = v1::SpotTableService::NewStub(channel_);
     info = v1::InfoService::NewStub(channel_);
@@ -55,6 +57,7 @@ class Served {
   std::unique_ptr<v1::TerrainService::Stub> terrain;
   std::unique_ptr<v1::SurfaceService::Stub> surface;
   std::unique_ptr<v1::TreeService::Stub> tree;
+  std::unique_ptr<v1::RenderService::Stub> render;
   std::unique_ptr<v1::RasterService::Stub> raster;
   std::unique_ptr<v1::SpotTableService::Stub> spot_table;
   std::unique_ptr<v1::InfoService::Stub> info;
