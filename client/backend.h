@@ -16,6 +16,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/flower_backend.h"
+#include "client/render_backend.h"
 #include "client/spot_table.h"
 #include "client/tree_backend.h"
 #include "core/grid/raster.h"
@@ -88,6 +89,7 @@ class Backend {
   // The other services; they live as long as this.
   virtual TreeBackend& trees() = 0;
   virtual FlowerBackend& flowers() = 0;
+  virtual RenderBackend& renders() = 0;
 };
 
 }  // namespace terrane::client

@@ -131,7 +131,8 @@ LocalBackend::LocalBackend(int threads)
     : threads_(std::max(threads, 1)),
       actor_(server::MakeActor(server::Limits(), threads_)),
       trees_(&actor_->trees()),
-      flowers_(&actor_->flowers()) {}
+      flowers_(&actor_->flowers()),
+      renders_(&actor_->renders()) {}
 
 absl::Status LocalBackend::StreamTiles(const v1::StreamTilesRequest& request,
                                        const OnHeader& on_header,

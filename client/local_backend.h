@@ -11,6 +11,7 @@
 
 #include "client/backend.h"
 #include "client/local_backend_flowers.h"
+#include "client/local_backend_renders.h"
 #include "client/local_backend_trees.h"
 #include "server/actor/actor.h"
 
@@ -55,12 +56,14 @@ class LocalBackend : public Backend {
       std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
   TreeBackend& trees() override { return trees_; }
   FlowerBackend& flowers() override { return flowers_; }
+  RenderBackend& renders() override { return renders_; }
 
  private:
   int threads_;
   std::unique_ptr<server::Actor> actor_;
   LocalTrees trees_;
   LocalFlowers flowers_;
+  LocalRenders renders_;
 };
 
 }  // namespace terrane::client

@@ -76,16 +76,15 @@ void Progress::Advance(std::int64_t units) {
                       ClockText(left)));
 }
 
-void PreparationProgress::Show(double fraction) {
+void ShareProgress::Show(double fraction) {
   if (!IsDue(fraction >= 1)) return;
   if (form() == Form::kJson) {
-    PrintJson(fmt::format("{{\"prepared\":{:.3f},\"seconds\":{:.3f}}}",
+    PrintJson(fmt::format("{{\"{}\":{:.3f},\"seconds\":{:.3f}}}", key_,
                           fraction, seconds()));
     return;
   }
   const double left = fraction > 0 ? seconds() * (1 - fraction) / fraction : 0;
-  DrawBar(fraction,
-          fmt::format("meeting spot heights  {} left", ClockText(left)));
+  DrawBar(fraction, fmt::format("{}  {} left", what_, ClockText(left)));
 }
 
 std::string ShortNumber(double value) {

@@ -53,13 +53,26 @@ class Progress : private ProgressLine {
   std::int64_t done_ = 0;
 };
 
-// Of a recipe that is made ready.
-class PreparationProgress : private ProgressLine {
+// Of work of which a share is done.
+class ShareProgress : private ProgressLine {
  public:
-  explicit PreparationProgress(ProgressMode mode) : ProgressLine(mode) {}
+  // `key` names the share in JSON, `what` is done in words.
+  ShareProgress(ProgressMode mode, const char* key, const char* what)
+      : ProgressLine(mode), key_(key), what_(what) {}
 
   // `fraction` of the work is done, 0 to 1.
   void Show(double fraction);
+
+ private:
+  const char* const key_;
+  const char* const what_;
+};
+
+// Of a recipe that is made ready.
+class PreparationProgress : public ShareProgress {
+ public:
+  explicit PreparationProgress(ProgressMode mode)
+      : ShareProgress(mode, "prepared", "meeting spot heights") {}
 };
 
 // "12.3 M": three digits and a unit of thousands.

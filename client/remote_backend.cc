@@ -47,7 +47,8 @@ RemoteBackend::RemoteBackend(const std::string& target)
       spot_table_(v1::SpotTableService::NewStub(caller_.channel())),
       info_(v1::InfoService::NewStub(caller_.channel())),
       trees_(&caller_),
-      flowers_(&caller_) {
+      flowers_(&caller_),
+      renders_(&caller_) {
   caller_.SetBringBack(
       [this](const std::string& content_id,
              std::stop_token stop) -> std::optional<absl::Status> {

@@ -14,6 +14,7 @@
 #include "client/backend.h"
 #include "client/remote_caller.h"
 #include "client/remote_flowers.h"
+#include "client/remote_renders.h"
 #include "client/remote_trees.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
@@ -62,6 +63,7 @@ class RemoteBackend : public Backend {
       std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
   TreeBackend& trees() override { return trees_; }
   FlowerBackend& flowers() override { return flowers_; }
+  RenderBackend& renders() override { return renders_; }
 
  private:
   using Attempt = RemoteCaller::Attempt;
@@ -86,6 +88,7 @@ class RemoteBackend : public Backend {
   std::unique_ptr<v1::InfoService::Stub> info_;
   RemoteTrees trees_;
   RemoteFlowers flowers_;
+  RemoteRenders renders_;
   // What was uploaded so far, by id.
   std::map<std::string, UploadContent> uploads_;
 };

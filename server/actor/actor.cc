@@ -7,6 +7,7 @@
 
 #include "core/base/simd_target.h"
 #include "core/base/violations.h"
+#include "core/raytrace/ray_tracer.h"
 #include "core/surface/surface.h"
 #include "core/surface/validate_surface.h"
 #include "core/terrain/spec_checks.h"
@@ -59,7 +60,8 @@ class TerrainActor : public Actor {
         meter_(std::make_shared<CostMeter>()),
         surfaces_(limits),
         trees_(limits),
-        flowers_(limits) {}
+        flowers_(limits),
+        renders_(this, limits) {}
 
   absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
       const v1::StreamTilesRequest& request, std::stop_token stop) override;
@@ -78,6 +80,7 @@ class TerrainActor : public Actor {
   const SurfaceMaker& surfaces() const override { return surfaces_; }
   const TreeMaker& trees() const override { return trees_; }
   const FlowerMaker& flowers() const override { return flowers_; }
+  const RenderMaker& renders() const override { return renders_; }
   std::unique_ptr<RasterUpload> BeginRasterUpload() override {
     return MakeRasterUpload(limits_, &rasters_);
   }
@@ -116,6 +119,7 @@ class TerrainActor : public Actor {
   const SurfaceMaker surfaces_;
   const TreeMaker trees_;
   const FlowerMaker flowers_;
+  const RenderMaker renders_;
 };
 
 // The spec to plan with, or null when it has violations.
@@ -377,6 +381,11 @@ v1::ServerLimits WriteLimits(const Limits& limits) {
   message.set_max_weight_rules(core::kMaxWeightRules);
   message.set_max_tree_segments(limits.tree.max_segments);
   message.set_max_tree_bytes(limits.tree.max_bytes);
+  message.set_max_render_pixels(limits.max_render_pixels);
+  message.set_max_render_passes(limits.max_render_passes);
+  message.set_max_render_triangles(limits.max_render_triangles);
+  message.set_render_bytes(limits.render_bytes);
+  message.set_max_render_side(core::kMaxPictureSide);
   message.set_max_forest_trees(limits.max_forest_trees);
   message.set_max_forest_segments(limits.max_forest_segments);
   message.set_max_flower_prototype_bytes(limits.flower.max_prototype_bytes);

@@ -21,6 +21,7 @@
 #include "core/terrain/terrain.h"
 #include "server/actor/flower_maker.h"
 #include "server/actor/limits.h"
+#include "server/actor/render_maker.h"
 #include "server/actor/surface_job.h"
 #include "server/actor/tree_maker.h"
 #include "terrane/v1/info.pb.h"
@@ -89,6 +90,7 @@ class Actor {
   virtual const SurfaceMaker& surfaces() const = 0;
   virtual const TreeMaker& trees() const = 0;
   virtual const FlowerMaker& flowers() const = 0;
+  virtual const RenderMaker& renders() const = 0;
 
   virtual std::unique_ptr<RasterUpload> BeginRasterUpload() = 0;
   virtual absl::StatusOr<v1::GetRasterResponse> GetRaster(

@@ -28,6 +28,11 @@ struct Limits {
   std::int64_t max_forest_trees = 1'000'000;
   std::int64_t max_forest_segments = 1'000'000'000;
   core::FlowerLimits flower;
+  std::int64_t max_render_pixels = std::int64_t{1} << 23;
+  int max_render_passes = 4096;
+  std::int64_t max_render_triangles = 4'000'000;
+  // Of the scenes and pictures of all streams together.
+  std::int64_t render_bytes = std::int64_t{2} << 30;
 };
 
 }  // namespace terrane::server

@@ -22,7 +22,8 @@ namespace terrane::server {
 template <typename Request, typename Message>
 class RunSource : public StreamSource {
  public:
-  using OpenRun = std::function<OpenedRun<Message>(const Request&)>;
+  using OpenRun =
+      std::function<OpenedRun<Message>(const Request&, std::stop_token)>;
 
   // `request` holds a serialized Request.
   RunSource(const grpc::ByteBuffer& request, OpenRun open)
@@ -36,7 +37,7 @@ class RunSource : public StreamSource {
       return absl::InvalidArgumentError("the request is not a " +
                                         Request::descriptor()->name());
     }
-    auto run = open_(request);
+    auto run = open_(request, stop);
     if (!run.ok()) return run.status();
     run_ = *std::move(run);
     record->recipe_hash = run_->recipe_hash();

@@ -29,6 +29,7 @@ Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
       surface_service_(parts_),
       tree_service_(parts_),
       flower_service_(parts_),
+      render_service_(parts_),
       raster_service_(parts_),
       spot_table_service_(parts_),
       info_service_(parts_) {}
@@ -47,6 +48,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   builder.RegisterService(&server->surface_service_);
   builder.RegisterService(&server->tree_service_);
   builder.RegisterService(&server->flower_service_);
+  builder.RegisterService(&server->render_service_);
   builder.RegisterService(&server->raster_service_);
   builder.RegisterService(&server->spot_table_service_);
   builder.RegisterService(&server->info_service_);
@@ -77,6 +79,7 @@ void Server::SetServing(bool serving) {
                            v1::SurfaceService::service_full_name(),
                            v1::TreeService::service_full_name(),
                            v1::FlowerService::service_full_name(),
+                           v1::RenderService::service_full_name(),
                            v1::RasterService::service_full_name(),
                            v1::SpotTableService::service_full_name(),
                            v1::InfoService::service_full_name()}) {

@@ -19,6 +19,7 @@
 #include "server/service/flower_service.h"
 #include "server/service/info_service.h"
 #include "server/service/raster_service.h"
+#include "server/service/render_service.h"
 #include "server/service/spot_table_service.h"
 #include "server/service/surface_service.h"
 #include "server/service/terrain_service.h"
@@ -64,6 +65,7 @@ class Server {
   SurfaceServiceImpl surface_service_;
   TreeServiceImpl tree_service_;
   FlowerServiceImpl flower_service_;
+  RenderServiceImpl render_service_;
   RasterServiceImpl raster_service_;
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;

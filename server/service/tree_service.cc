@@ -13,7 +13,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* TreeServiceImpl::StreamTree(
   using Source = RunSource<v1::StreamTreeRequest, v1::StreamTreeResponse>;
   return TileStream::Start(
       parts_, "StreamTree", context,
-      std::make_unique<Source>(*request, [this](const auto& asked) {
+      std::make_unique<Source>(*request, [this](const auto& asked, auto) {
         return parts_.actor->trees().OpenRows(asked);
       }));
 }
@@ -24,7 +24,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* TreeServiceImpl::StreamTreeLeaves(
       RunSource<v1::StreamTreeLeavesRequest, v1::StreamTreeLeavesResponse>;
   return TileStream::Start(
       parts_, "StreamTreeLeaves", context,
-      std::make_unique<Source>(*request, [this](const auto& asked) {
+      std::make_unique<Source>(*request, [this](const auto& asked, auto) {
         return parts_.actor->trees().OpenLeaves(asked);
       }));
 }
@@ -35,7 +35,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* TreeServiceImpl::StreamTreeMesh(
       RunSource<v1::StreamTreeMeshRequest, v1::StreamTreeMeshResponse>;
   return TileStream::Start(
       parts_, "StreamTreeMesh", context,
-      std::make_unique<Source>(*request, [this](const auto& asked) {
+      std::make_unique<Source>(*request, [this](const auto& asked, auto) {
         return parts_.actor->trees().OpenMesh(asked);
       }));
 }
@@ -45,7 +45,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* TreeServiceImpl::StreamForest(
   using Source = RunSource<v1::StreamForestRequest, v1::StreamForestResponse>;
   return TileStream::Start(
       parts_, "StreamForest", context,
-      std::make_unique<Source>(*request, [this](const auto& asked) {
+      std::make_unique<Source>(*request, [this](const auto& asked, auto) {
         return parts_.actor->trees().OpenForest(asked);
       }));
 }

@@ -7,7 +7,7 @@
 // serialized request or, when they start with '{', protobuf JSON) and, in every
 // build, as a test that replays tests/fuzz/corpus: request holds seeds of
 // StreamTiles, surface of StreamSurface, tree of StreamTreeMesh, forest of
-// StreamForest, flower of StreamFlower.
+// StreamForest, flower of StreamFlower, render of StreamRender.
 #include <google/protobuf/util/json_util.h>
 
 #include <algorithm>
@@ -140,10 +140,32 @@ bool FlowerKeepsContract(const std::string& bytes) {
          RunKeepsContract(TheActor().flowers().Open(request), 5);
 }
 
+bool RenderKeepsContract(const std::string& bytes) {
+  constexpr int kFewMessages = 4;
+  constexpr std::int64_t kFewTriangles = 20'000;
+  constexpr std::int64_t kFewPaths = 20'000;
+  v1::EstimateRenderRequest request;
+  if (!ParseRequest(bytes, request.mutable_request())) return true;
+  const auto estimate = TheActor().renders().Estimate(request);
+  if (!estimate.ok()) return IsDocumented(estimate.status());
+  if (estimate->bands() < 0 || estimate->data_bytes() < 0 ||
+      estimate->triangles_most() < 1 || estimate->paths() < 1 ||
+      !(estimate->cpu_seconds() >= 0) || estimate->memory_bytes_most() < 1) {
+    return false;
+  }
+  // A terrain may take long to prepare.
+  return request.request().has_terrain() ||
+         estimate->triangles_most() > kFewTriangles ||
+         estimate->paths() > kFewPaths ||
+         RunKeepsContract(TheActor().renders().Open(request.request(), {}),
+                          kFewMessages);
+}
+
 // False when an answer breaks the contract.
 bool RequestKeepsContract(const std::string& bytes) {
   return TerrainKeepsContract(bytes) && SurfaceKeepsContract(bytes) &&
-         TreeKeepsContract(bytes) && FlowerKeepsContract(bytes);
+         TreeKeepsContract(bytes) && FlowerKeepsContract(bytes) &&
+         RenderKeepsContract(bytes);
 }
 
 }  // namespace terrane::server
@@ -185,7 +207,8 @@ std::string BytesOf(const std::filesystem::path& seed) {
 }
 
 TEST(RequestFuzzTest, CorpusKeepsTheContract) {
-  for (const char* folder : {"request", "surface", "tree", "forest", "flower"}) {
+  for (const char* folder :
+       {"request", "surface", "tree", "forest", "flower", "render"}) {
     const std::vector<std::filesystem::path> seeds = Seeds(folder);
     for (const std::filesystem::path& seed : seeds) {
       EXPECT_TRUE(RequestKeepsContract(BytesOf(seed))) << seed.filename();
@@ -210,6 +233,7 @@ TEST(RequestFuzzTest, JsonSeedsAreRequests) {
   ExpectJsonSeedsAre<v1::StreamTreeMeshRequest>("tree");
   ExpectJsonSeedsAre<v1::StreamForestRequest>("forest");
   ExpectJsonSeedsAre<v1::StreamFlowerRequest>("flower");
+  ExpectJsonSeedsAre<v1::StreamRenderRequest>("render");
 }
 
 }  // namespace

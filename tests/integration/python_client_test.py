@@ -18,6 +18,7 @@ SERVER, STUBS = sys.argv[1:3]
 sys.path.insert(0, STUBS)
 
 from terrane.v1 import common_pb2, info_pb2, info_pb2_grpc, raster_pb2, raster_pb2_grpc  # noqa: E402
+from terrane.v1 import render_pb2, render_pb2_grpc  # noqa: E402
 from terrane.v1 import spot_table_pb2, spot_table_pb2_grpc  # noqa: E402
 from terrane.v1 import surface_pb2, surface_pb2_grpc  # noqa: E402
 from terrane.v1 import terrain_pb2, terrain_pb2_grpc, terrain_recipe_pb2  # noqa: E402
@@ -249,6 +250,24 @@ class PythonClientTest(unittest.TestCase):
                 break
         stream.cancel()
         self.assertEqual(parents[0], 0xFFFFFFFF)
+
+    def test_a_picture_gets_better_with_every_stage(self):
+        stub = render_pb2_grpc.RenderServiceStub(self.channel)
+        subject = render_pb2.SurfaceSubject(
+            surface=surface_pb2.SurfaceChoice(preset="surface/fig07"), columns=65, rows=65)
+        request = render_pb2.StreamRenderRequest(
+            surface=subject, ground=True, width=60, height=40, passes=64,
+            encoding=render_pb2.PIXEL_ENCODING_LINEAR_FLOAT32_LE)
+        pictures = {}
+        for message in stub.StreamRender(request, timeout=120):
+            if message.HasField("band"):
+                pixels = numpy.frombuffer(message.band.pixels, "<f4").reshape(40, 60, 3)
+                pictures[message.band.passes] = pixels
+        self.assertEqual(list(pictures), [1, 2, 4, 8, 16, 32, 64])
+        noise = [numpy.sqrt(((pictures[n] - pictures[64]) ** 2).mean()) for n in (1, 4, 16)]
+        self.assertGreater(noise[0], 1.5 * noise[1])
+        self.assertGreater(noise[1], 1.5 * noise[2])
+        self.assertTrue((pictures[64] >= 0).all())
 
     def test_memory_stays_flat_over_large_trees(self):
         # A tree of a million rows is 49 MB; the server keeps the branches that wait

@@ -129,6 +129,7 @@ class FakeActor : public Actor {
   const SurfaceMaker& surfaces() const override { return surfaces_; }
   const TreeMaker& trees() const override { return trees_; }
   const FlowerMaker& flowers() const override { return flowers_; }
+  const RenderMaker& renders() const override { return renders_; }
   std::unique_ptr<RasterUpload> BeginRasterUpload() override { return nullptr; }
   absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest&) override {
@@ -147,6 +148,7 @@ class FakeActor : public Actor {
   const SurfaceMaker surfaces_{Limits()};
   const TreeMaker trees_{Limits()};
   const FlowerMaker flowers_{Limits()};
+  const RenderMaker renders_{this, Limits()};
 };
 
 // Waits up to ten seconds for a condition that other threads bring about.

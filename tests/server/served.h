@@ -16,6 +16,7 @@
 #include "terrane/v1/flower.grpc.pb.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
+#include "terrane/v1/render.grpc.pb.h"
 #include "terrane/v1/spot_table.grpc.pb.h"
 #include "terrane/v1/surface.grpc.pb.h"
 #include "terrane/v1/terrain.grpc.pb.h"
@@ -41,6 +42,7 @@ class Served {
     surface = v1::SurfaceService::NewStub(channel_);
     tree = v1::TreeService::NewStub(channel_);
     flower = v1::FlowerService::NewStub(channel_);
+    render = v1::RenderService::NewStub(channel_);
     raster = v1::RasterService::NewStub(channel_);
     spot_table = v1::SpotTableService::NewStub(channel_);
     info = v1::InfoService::NewStub(channel_);
@@ -58,6 +60,7 @@ class Served {
   std::unique_ptr<v1::SurfaceService::Stub> surface;
   std::unique_ptr<v1::TreeService::Stub> tree;
   std::unique_ptr<v1::FlowerService::Stub> flower;
+  std::unique_ptr<v1::RenderService::Stub> render;
   std::unique_ptr<v1::RasterService::Stub> raster;
   std::unique_ptr<v1::SpotTableService::Stub> spot_table;
   std::unique_ptr<v1::InfoService::Stub> info;
