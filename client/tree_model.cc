@@ -11,6 +11,7 @@
 #include "core/base/det_math.h"
 #include "core/mesh/float3.h"
 #include "core/mesh/leaf_mesh.h"
+#include "core/mesh/rotation.h"
 
 namespace terrane::client {
 namespace {
@@ -138,10 +139,28 @@ absl::StatusOr<v1::TubeOptions> TubesOfLevel(const v1::TreeChoice& choice,
   return tubes;
 }
 
-core::Float3 Turned(const core::Quaternion& q, const core::Float3& v) {
-  const core::Float3 axis = {q.x, q.y, q.z};
-  const core::Float3 once = 2.0f * core::Cross(axis, v);
-  return v + q.w * once + core::Cross(axis, once);
+// Copies of an object's instances at every leaf. A flower stands on its leaf's
+// face: its +y is the leaf's direction, its +z the leaf's normal. `scale` takes
+// its metres to units of the leaf.
+core::Instances AtLeaves(const core::Instances& instances, float scale,
+                         const core::Instances& leaves) {
+  // A leaf's own mesh lies along +x; a quarter of a turn about z.
+  constexpr float kRootOfHalf = 0.70710678f;
+  constexpr core::Quaternion kFromYToX = {0, 0, -kRootOfHalf, kRootOfHalf};
+  core::Instances placed;
+  for (std::size_t leaf = 0; leaf < leaves.count(); ++leaf) {
+    const core::Quaternion turn =
+        core::Product(leaves.rotations[leaf], kFromYToX);
+    const float size = scale * leaves.scales[leaf].x;
+    for (std::size_t k = 0; k < instances.count(); ++k) {
+      placed.translations.push_back(
+          leaves.translations[leaf] +
+          size * core::Rotated(turn, instances.translations[k]));
+      placed.rotations.push_back(core::Product(turn, instances.rotations[k]));
+      placed.scales.push_back(size * instances.scales[k]);
+    }
+  }
+  return placed;
 }
 
 }  // namespace
@@ -202,11 +221,45 @@ absl::StatusOr<TreeLook> TreeLook::Create(const v1::TreeView& view) {
   return look;
 }
 
+void TreeLook::SetFoliage(std::shared_ptr<const FlowerModel> foliage) {
+  foliage_ = std::move(foliage);
+}
+
+absl::Status TreeLook::Dress(TreeModel* model) const {
+  constexpr std::int64_t kMostInstances = 5'000'000;
+  if (foliage_ == nullptr) return absl::OkStatus();
+  const std::int64_t rows = foliage_->header().rows();
+  const auto leaves = static_cast<std::int64_t>(model->leaves.count());
+  if (leaves > kMostInstances / rows) {
+    return absl::InvalidArgumentError(
+        "--foliage: must be at most " + std::to_string(kMostInstances) +
+        " instances, got " + std::to_string(rows) + " at each of " +
+        std::to_string(leaves) + " leaves; lower --depth");
+  }
+  const auto scale =
+      static_cast<float>(1 / foliage_->header().recipe().unit_m());
+  for (const core::SceneObject& object : foliage_->View().objects) {
+    model->foliage.push_back(AtLeaves(*object.instances, scale, model->leaves));
+  }
+  return absl::OkStatus();
+}
+
 core::Scene TreeLook::SceneOf(const TreeModel& model) const {
   core::Scene scene = {materials_, {{"wood", &model.wood, kBark}}};
-  if (model.leaves.count() > 0) {
+  if (model.leaves.count() == 0) return scene;
+  if (model.foliage.empty()) {
     scene.objects.push_back({"leaves", &leaf_, kLeaf, &model.leaves});
+    return scene;
   }
+  core::Scene foliage = foliage_->View();
+  for (std::size_t k = 0; k < foliage.objects.size(); ++k) {
+    core::SceneObject object = foliage.objects[k];
+    object.material += scene.materials.size();
+    object.instances = &model.foliage[k];
+    scene.objects.push_back(std::move(object));
+  }
+  scene.materials.insert(scene.materials.end(), foliage.materials.begin(),
+                         foliage.materials.end());
   return scene;
 }
 
@@ -227,8 +280,8 @@ core::Mesh MergedMesh(const core::Scene& scene) {
           // Leaves and trees grow evenly in all directions.
           const core::Instances& places = *object.instances;
           p = places.translations[copy] +
-              places.scales[copy].x * Turned(places.rotations[copy], p);
-          n = Turned(places.rotations[copy], n);
+              places.scales[copy].x * core::Rotated(places.rotations[copy], p);
+          n = core::Rotated(places.rotations[copy], n);
         }
         merged.positions.push_back(p);
         merged.normals.push_back(n);

@@ -12,6 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/chosen_tree.h"
+#include "client/flower_model.h"
 #include "client/progress.h"
 #include "client/tree_backend.h"
 #include "core/mesh/scene.h"
@@ -39,6 +40,8 @@ struct TreeModel {
   v1::TreeHeader header;
   core::Mesh wood;
   core::Instances leaves;
+  // Where the objects of the look's foliage stand; empty for plain leaves.
+  std::vector<core::Instances> foliage;
 };
 
 // Errors: those of the backend; INVALID_ARGUMENT when `level` leaves nothing,
@@ -54,6 +57,13 @@ class TreeLook {
   // Errors: INVALID_ARGUMENT naming the field of the view that is not well.
   static absl::StatusOr<TreeLook> Create(const v1::TreeView& view);
 
+  // A flower or leaf of FlowerService stands at every leaf's place, as large as
+  // the leaf is long, in place of the plain leaf.
+  void SetFoliage(std::shared_ptr<const FlowerModel> foliage);
+  // Places the foliage, if there is one, on a model. Errors: INVALID_ARGUMENT
+  // for more instances than a file should have.
+  absl::Status Dress(TreeModel* model) const;
+
   // Refers to the model and to this.
   core::Scene SceneOf(const TreeModel& model) const;
   const core::Mesh& leaf() const { return leaf_; }
@@ -67,6 +77,7 @@ class TreeLook {
 
   std::vector<core::Material> materials_;
   core::Mesh leaf_;
+  std::shared_ptr<const FlowerModel> foliage_;
 };
 
 // One mesh of a whole scene, instances written out, coloured by the materials:

@@ -9,11 +9,13 @@
 
 #include "client/chosen_flower.h"
 #include "client/commands/command.h"
+#include "client/commands/flower_options.h"
 #include "client/commands/shared_options.h"
 #include "client/exit_code.h"
 #include "client/flower_model.h"
 #include "client/report.pb.h"
 #include "client/scene_files.h"
+#include "client/traced_picture.h"
 
 namespace terrane::client {
 namespace {
@@ -23,13 +25,9 @@ constexpr char kFooter[] = R"(Examples:
   terrane flower --preset flower/rose --stage 0.3 --seed 7 --out bud.obj
   terrane flower --preset flower/daisy --plants 100 --out bed.glb
   terrane flower --preset flower/rose --method bezier --instancing nodes --out b.glb
---out by extension: .glb .obj (with an .mtl beside it), in metres. Pictures:
-terrane render --preset flower/rose. Exit codes: as terrain.)";
-
-const std::map<std::string, v1::PetalMethod> kMethods = {
-    {"perlin", v1::PETAL_METHOD_PERLIN},
-    {"ifs", v1::PETAL_METHOD_IFS},
-    {"bezier", v1::PETAL_METHOD_BEZIER}};
+  terrane flower --preset flower/pansy --out pansy.png
+--out by extension: .glb .obj (with an .mtl beside it), in metres; .png .exr, ray
+traced (terrane render has more to say of pictures). Exit codes: as terrain.)";
 
 const std::map<std::string, core::GltfInstancing> kInstancings = {
     {"extension", core::GltfInstancing::kExtension},
@@ -45,6 +43,7 @@ struct FlowerCommand {
   FlowerOptions flower;
   std::string out;
   core::GltfInstancing instancing = core::GltfInstancing::kExtension;
+  int picture_size = 800;  // pixels a side
   ProgressMode progress = ProgressMode::kAuto;
   bool json = false;
   bool dry_run = false;
@@ -53,9 +52,11 @@ struct FlowerCommand {
 absl::Status CheckOut(const std::string& path) {
   const std::filesystem::path extension =
       std::filesystem::path(path).extension();
-  if (extension == ".glb" || extension == ".obj") return absl::OkStatus();
-  return absl::InvalidArgumentError("--out: must end in .glb or .obj, got \"" +
-                                    path + "\"");
+  if (extension == ".glb" || extension == ".obj" || IsTracedFile(path)) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(
+      "--out: must end in .glb, .obj, .png or .exr, got \"" + path + "\"");
 }
 
 int PrintEstimate(const FlowerCommand& command, const v1::FlowerChoice& choice,
@@ -122,6 +123,23 @@ std::string TextOf(const FlowerSummary& summary) {
                     summary.seconds());
 }
 
+int Draw(const FlowerCommand& command, const v1::FlowerChoice& choice,
+         RenderBackend* backend, std::stop_token stop) {
+  v1::StreamRenderRequest request;
+  *request.mutable_flower()->mutable_flower() = choice;
+  request.set_width(command.picture_size);
+  request.set_height(command.picture_size);
+  const absl::Status drawn =
+      WriteTracedPicture(std::move(request), command.out, command.progress,
+                         backend, std::move(stop));
+  if (!drawn.ok()) return ReportStatus(drawn);
+  FlowerSummary summary;
+  summary.add_files(command.out);
+  std::cout << (command.json ? JsonLine(summary) : "wrote " + command.out)
+            << '\n';
+  return kExitOk;
+}
+
 int Generate(const FlowerCommand& command, const v1::FlowerChoice& choice,
              FlowerBackend* backend, std::stop_token stop) {
   const auto start = std::chrono::steady_clock::now();
@@ -155,10 +173,14 @@ int Run(const FlowerCommand& command, std::stop_token stop) {
     return kExitUsage;
   }
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
-  return command.dry_run
-             ? PrintEstimate(command, *choice, &backend->flowers(),
-                             std::move(stop))
-             : Generate(command, *choice, &backend->flowers(), std::move(stop));
+  if (command.dry_run) {
+    return PrintEstimate(command, *choice, &backend->flowers(),
+                         std::move(stop));
+  }
+  if (IsTracedFile(command.out)) {
+    return Draw(command, *choice, &backend->renders(), std::move(stop));
+  }
+  return Generate(command, *choice, &backend->flowers(), std::move(stop));
 }
 
 void AddOutputOptions(CLI::App* app, FlowerCommand* command) {
@@ -170,6 +192,10 @@ void AddOutputOptions(CLI::App* app, FlowerCommand* command) {
       ->transform(OneOf(kInstancings))
       ->type_name("NAME")
       ->default_str("extension")
+      ->group("Output");
+  app->add_option("--size", command->picture_size,
+                  "Of pictures, in pixels a side (default: 800)")
+      ->check(CLI::Range(16, 8192))
       ->group("Output");
   app->add_flag("--json", command->json,
                 "Print what was written as JSON on standard output")
@@ -201,18 +227,7 @@ void AddFlowerOptions(CLI::App* app, FlowerOptions* flower) {
       ->excludes(preset)
       ->group("Flower");
   app->add_option("--seed", flower->seed, "Any 64-bit number")->group("Flower");
-  app->add_option("--stage", flower->stage,
-                  "Growth, 0 (a bud) to 1 (full bloom)")
-      ->group("Flower");
-  app->add_option("--plants", flower->plants,
-                  "Plants of a bed, 1 to 1,000,000, no two alike")
-      ->group("Flower");
-  app->add_option("--method", flower->method,
-                  "Petals by perlin (the paper's), ifs or bezier (what it "
-                  "compares with)")
-      ->transform(OneOf(kMethods))
-      ->type_name("NAME")
-      ->group("Flower");
+  AddGrowthOptions(app, flower);
 }
 
 }  // namespace

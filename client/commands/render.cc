@@ -11,6 +11,7 @@
 
 #include "client/chosen_spots.h"
 #include "client/commands/command.h"
+#include "client/commands/flower_options.h"
 #include "client/commands/render_command.h"
 #include "client/commands/render_traced.h"
 #include "client/commands/shared_options.h"
@@ -35,6 +36,7 @@ constexpr char kFooter[] = R"(Examples:
   terrane render --preset fbm/fig06b --out fig06b.png
   terrane render --side-by-side model.tif finer.tif --out both.png
   terrane render --preset demo/alps --style traced --out alps.png
+  terrane render --preset flower/rose --stage 0.6 --out rose.png
 A preset brings its own style, level, water and marks; options override them.)";
 
 // What is drawn pixel by pixel in memory.
@@ -358,6 +360,7 @@ void AddRenderCommand(CLI::App* app, Action* action) {
   AddNetOptions(subcommand, &command->surface);
   AddSizeOption(subcommand, &command->size);
   AddTracedOptions(subcommand, &command->traced);
+  AddGrowthOptions(subcommand, &command->flower);
   subcommand
       ->add_flag("--control-net", command->control_net,
                  "Draw the control polyhedron of a surface, too")

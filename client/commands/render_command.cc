@@ -2,6 +2,9 @@
 
 #include <map>
 
+#include "client/chosen_tree.h"
+#include "client/traced_picture.h"
+
 namespace terrane::client {
 namespace {
 
@@ -17,7 +20,8 @@ const std::map<std::string, v1::RenderStyle> kStyles = {
 void AddPictureOptions(CLI::App* app, RenderCommand* command) {
   app->add_option("--style", command->style,
                   "relief (default), hillshade, grey, perspective or traced; "
-                  "profiles are always plotted, trees always traced")
+                  "profiles are always plotted, trees and flowers always "
+                  "traced")
       ->transform(OneOf(kStyles))
       ->type_name("NAME")
       ->group("Picture");
@@ -76,11 +80,16 @@ bool IsSurface(const RenderCommand& command) {
 }
 
 bool IsTree(const RenderCommand& command) {
-  return command.terrain.preset.starts_with("tree/");
+  return IsTreePreset(command.terrain.preset);
+}
+
+bool IsFlower(const RenderCommand& command) {
+  return IsFlowerPreset(command.terrain.preset);
 }
 
 bool IsTraced(const RenderCommand& command) {
-  return IsTree(command) || command.style == v1::RENDER_STYLE_TRACED;
+  return IsTree(command) || IsFlower(command) ||
+         command.style == v1::RENDER_STYLE_TRACED;
 }
 
 SurfaceOptions SurfaceOptionsOf(const RenderCommand& command) {

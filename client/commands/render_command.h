@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "client/chosen_flower.h"
 #include "client/commands/render_traced.h"
 #include "client/commands/shared_options.h"
 #include "client/commands/surface_options.h"
@@ -36,6 +37,8 @@ struct RenderCommand {
   SurfaceOptions surface;
   SurfaceSize size;
   bool control_net = false;
+  // Flowers; the preset and the seed are the terrain's.
+  FlowerOptions flower;
   TracedOptions traced;
 };
 
@@ -45,7 +48,8 @@ void AddPictureOptions(CLI::App* app, RenderCommand* command);
 // What a preset's name or a net chooses.
 bool IsSurface(const RenderCommand& command);
 bool IsTree(const RenderCommand& command);
-// Trees always are.
+bool IsFlower(const RenderCommand& command);
+// Trees and flowers always are.
 bool IsTraced(const RenderCommand& command);
 
 SurfaceOptions SurfaceOptionsOf(const RenderCommand& command);

@@ -1,15 +1,14 @@
 #include "client/commands/render_traced.h"
 
-#include <cstring>
-#include <filesystem>
 #include <map>
-#include <span>
 #include <utility>
 
 #include "client/backend.h"
+#include "client/chosen_flower.h"
+#include "client/chosen_tree.h"
 #include "client/commands/render_command.h"
-#include "client/output_file.h"
-#include "core/codec/image_codec.h"
+#include "client/traced_picture.h"
+#include "client/tree_model.h"
 
 namespace terrane::client {
 namespace {
@@ -25,8 +24,14 @@ const std::map<std::string, ProgressMode> kProgressModes = {
     {"none", ProgressMode::kNone},
     {"json", ProgressMode::kJson}};
 
-bool IsExr(const std::string& path) {
-  return std::filesystem::path(path).extension() == ".exr";
+void SetMaterial(const core::Material& material, v1::RenderMaterial* message) {
+  v1::LinearColor* const color = message->mutable_base_color();
+  color->set_red(material.base_color[0]);
+  color->set_green(material.base_color[1]);
+  color->set_blue(material.base_color[2]);
+  message->set_roughness(material.roughness);
+  message->set_specular(material.specular);
+  message->set_gloss(material.Gloss());
 }
 
 // What the options say of the picture, whatever it shows.
@@ -47,17 +52,47 @@ void SetPicture(const RenderCommand& command,
   if (options.shading) request->set_shading(*options.shading);
   if (options.ground) request->set_ground(*options.ground);
   if (options.exposure) request->set_exposure(*options.exposure);
-  request->set_final_only(true);
 }
 
-// What to trace: a tree, a surface or a terrain, as the preset's name says.
+// A tree as its preset wants to be looked at.
+absl::Status SetTree(const RenderCommand& command, TreeBackend* backend,
+                     std::stop_token stop, v1::TreeSubject* subject) {
+  TreeOptions options;
+  options.preset = command.terrain.preset;
+  options.seed = command.terrain.seed;
+  const absl::StatusOr<ChosenTree> tree =
+      ChooseTree(options, backend, std::move(stop));
+  if (!tree.ok()) return tree.status();
+  *subject->mutable_tree()->mutable_recipe() = tree->recipe;
+  const absl::StatusOr<TreeLook> look = TreeLook::Create(tree->view);
+  if (!look.ok()) return look.status();
+  SetMaterial(look->materials()[TreeLook::kBark], subject->mutable_bark());
+  SetMaterial(look->materials()[TreeLook::kLeaf], subject->mutable_leaf());
+  v1::LeafShape* const shape = subject->mutable_leaf_shape();
+  shape->set_width(tree->view.leaf_width());
+  shape->set_blades(tree->view.leaf_blades());
+  shape->set_spread_deg(tree->view.leaf_spread_deg());
+  return absl::OkStatus();
+}
+
+// What to trace: a tree, a flower, a surface or a terrain, as the preset's name
+// says.
 absl::StatusOr<v1::StreamRenderRequest> TracedSubject(
     const RenderCommand& command, Backend* backend, std::stop_token stop) {
   v1::StreamRenderRequest request;
   if (IsTree(command)) {
-    v1::TreeChoice* const tree = request.mutable_tree()->mutable_tree();
-    tree->set_preset(command.terrain.preset);
-    if (command.terrain.seed) tree->set_seed(*command.terrain.seed);
+    const absl::Status set = SetTree(command, &backend->trees(),
+                                     std::move(stop), request.mutable_tree());
+    if (!set.ok()) return set;
+    return request;
+  }
+  if (IsFlower(command)) {
+    FlowerOptions flower = command.flower;
+    flower.preset = command.terrain.preset;
+    flower.seed = command.terrain.seed;
+    const absl::StatusOr<v1::FlowerChoice> choice = ChooseFlower(flower);
+    if (!choice.ok()) return choice.status();
+    *request.mutable_flower()->mutable_flower() = *choice;
     return request;
   }
   if (IsSurface(command)) {
@@ -82,43 +117,6 @@ absl::StatusOr<v1::StreamRenderRequest> TracedSubject(
       WindowToDraw(command, *terrain, terrain->level);
   if (window.has_value()) *subject->mutable_window() = *window;
   return request;
-}
-
-// Streams the finished picture alone. `Value` is what its encoding holds.
-template <typename Value>
-absl::StatusOr<core::Image<Value>> StreamPicture(
-    const v1::StreamRenderRequest& request, ProgressMode mode, Backend* backend,
-    std::stop_token stop) {
-  core::Image<Value> image;
-  ShareProgress progress(mode, "rendered", "rendering");
-  const auto on_header = [&](const v1::RenderHeader& header) {
-    image = core::Image<Value>(header.width(), header.height(), 3);
-    return absl::OkStatus();
-  };
-  const auto on_part = [&](const v1::StreamRenderResponse& part) {
-    if (part.has_progress()) {
-      progress.Show(part.progress().share());
-    } else {
-      const v1::RenderBand& band = part.band();
-      std::memcpy(image.Pixel(0, band.first_row()), band.pixels().data(),
-                  band.pixels().size());
-    }
-    return absl::OkStatus();
-  };
-  const absl::Status status = backend->renders().StreamRender(
-      request, on_header, on_part, std::move(stop));
-  if (!status.ok()) return status;
-  return image;
-}
-
-template <typename Value, typename Encode>
-absl::StatusOr<core::EncodedImage> EncodedPicture(
-    const v1::StreamRenderRequest& request, ProgressMode mode, Backend* backend,
-    std::stop_token stop, const Encode& encode) {
-  const auto image =
-      StreamPicture<Value>(request, mode, backend, std::move(stop));
-  if (!image.ok()) return image.status();
-  return encode(*image);
 }
 
 }  // namespace
@@ -164,10 +162,6 @@ void AddTracedOptions(CLI::App* command, TracedOptions* options) {
       ->group(group);
 }
 
-bool IsTracedFile(const std::string& path) {
-  return IsExr(path) || std::filesystem::path(path).extension() == ".png";
-}
-
 absl::Status WriteTraced(const RenderCommand& command, std::stop_token stop) {
   if (!command.input.empty()) {
     return absl::InvalidArgumentError(
@@ -180,22 +174,9 @@ absl::Status WriteTraced(const RenderCommand& command, std::stop_token stop) {
       TracedSubject(command, backend.get(), stop);
   if (!request.ok()) return request.status();
   SetPicture(command, &*request);
-  const ProgressMode mode = command.traced.progress;
-  absl::StatusOr<core::EncodedImage> bytes;
-  if (IsExr(command.out)) {
-    request->set_encoding(v1::PIXEL_ENCODING_LINEAR_FLOAT32_LE);
-    bytes = EncodedPicture<float>(
-        *request, mode, backend.get(), std::move(stop),
-        [](const core::Image<float>& image) { return core::EncodeExr(image); });
-  } else {
-    bytes = EncodedPicture<std::uint8_t>(
-        *request, mode, backend.get(), std::move(stop),
-        [](const core::Image<std::uint8_t>& image) {
-          return core::EncodePng(image);
-        });
-  }
-  if (!bytes.ok()) return bytes.status();
-  return WriteFile(command.out, std::as_bytes(std::span(*bytes)));
+  return WriteTracedPicture(*std::move(request), command.out,
+                            command.traced.progress, &backend->renders(),
+                            std::move(stop));
 }
 
 }  // namespace terrane::client

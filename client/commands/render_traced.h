@@ -26,9 +26,6 @@ struct TracedOptions {
 
 void AddTracedOptions(CLI::App* command, TracedOptions* options);
 
-// Whether the file named is one that traced pictures are written to.
-bool IsTracedFile(const std::string& path);
-
 struct RenderCommand;
 
 // Traces what the options of `terrane render` choose and writes the picture; a

@@ -18,6 +18,7 @@ constexpr char kFooter[] = R"(Examples:
   terrane tree --preset tree/oak --seed 3 --out oak.glb
   terrane tree --preset tree/genetic --out tree.svg
   terrane tree --preset tree/birch --lod 0,1,2 --instancing nodes --out birch.glb
+  terrane tree --preset tree/oak --depth 6 --foliage flower/leaf-wavy --out o.glb
   terrane tree --preset tree/spruce --forest --count 20 --first-seed 1 --out wood.csv
 --out by extension: .svg .png (pictures), .glb .obj (meshes), .swc .csv (rows of
 segments). Exit codes: as terrain.)";
@@ -42,6 +43,7 @@ struct TreeCommand {
   ForestOptions forest;
   bool is_forest = false;
   TreeFileOptions files;
+  std::string foliage;  // preset
   int sides = 0;
   v1::TubeEnds ends = v1::TUBE_ENDS_UNSPECIFIED;
   bool json = false;
@@ -85,17 +87,26 @@ std::string TextOf(const TreeSummary& summary) {
 }
 
 absl::Status Write(const TreeCommand& command, const ChosenTree& tree,
-                   TreeBackend* backend, std::stop_token stop,
+                   Backend* backend, std::stop_token stop,
                    TreeSummary* summary) {
   TreeFileOptions files = command.files;
   files.model.tubes.set_sides(command.sides);
   files.model.tubes.set_ends(command.ends);
+  if (!command.foliage.empty()) {
+    v1::FlowerChoice choice;
+    choice.set_preset(command.foliage);
+    absl::StatusOr<FlowerModel> foliage = FlowerModel::Stream(
+        choice, ProgressMode::kNone, &backend->flowers(), stop);
+    if (!foliage.ok()) return foliage.status();
+    files.foliage = std::make_shared<FlowerModel>(std::move(*foliage));
+  }
   if (!command.is_forest) {
-    return WriteTree(tree, files, backend, std::move(stop), summary);
+    return WriteTree(tree, files, &backend->trees(), std::move(stop), summary);
   }
   const absl::StatusOr<Forest> forest = Forest::Create(command.forest);
   if (!forest.ok()) return forest.status();
-  return WriteForest(tree, *forest, files, backend, std::move(stop), summary);
+  return WriteForest(tree, *forest, files, &backend->trees(), std::move(stop),
+                     summary);
 }
 
 int Run(const TreeCommand& command, std::stop_token stop) {
@@ -116,7 +127,7 @@ int Run(const TreeCommand& command, std::stop_token stop) {
   const auto start = std::chrono::steady_clock::now();
   TreeSummary summary;
   const absl::Status status =
-      Write(command, *tree, &backend->trees(), std::move(stop), &summary);
+      Write(command, *tree, backend.get(), std::move(stop), &summary);
   if (!status.ok()) return ReportStatus(status);
   summary.set_seconds(
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
@@ -198,6 +209,13 @@ void AddMeshOptions(CLI::App* app, TreeCommand* command) {
       ->group("Mesh");
   app->add_flag("--leaves,!--no-leaves", files->model.leaves,
                 "Leaves, where the recipe has them (default: yes)")
+      ->group("Mesh");
+  app->add_option(
+         "--foliage", command->foliage,
+         "Flowers or leaves of a preset in the leaves' places, such as "
+         "flower/leaf-wavy; in .glb and .obj")
+      ->type_name("PRESET")
+      ->excludes("--forest")
       ->group("Mesh");
   app->add_option("--instancing", files->instancing,
                   "Leaves in .glb: extension (EXT_mesh_gpu_instancing) or "

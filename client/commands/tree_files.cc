@@ -144,8 +144,9 @@ Picture DrawScene(const core::Scene& scene, const ChosenTree& tree, int size) {
 absl::Status WriteModels(TreeFormat format, const ChosenTree& tree,
                          const TreeFileOptions& options, TreeBackend* backend,
                          std::stop_token stop, TreeSummary* summary) {
-  const absl::StatusOr<TreeLook> look = TreeLook::Create(tree.view);
+  absl::StatusOr<TreeLook> look = TreeLook::Create(tree.view);
   if (!look.ok()) return look.status();
+  look->SetFoliage(options.foliage);
   std::vector<TreeModel> models;
   std::vector<core::Scene> scenes;
   // Scenes refer to the models.
@@ -156,6 +157,8 @@ absl::Status WriteModels(TreeFormat format, const ChosenTree& tree,
     absl::StatusOr<TreeModel> model =
         StreamTreeModel(tree.recipe, of_level, backend, stop);
     if (!model.ok()) return model.status();
+    const absl::Status dressed = look->Dress(&*model);
+    if (!dressed.ok()) return dressed;
     models.push_back(std::move(*model));
     scenes.push_back(look->SceneOf(models.back()));
   }
@@ -249,6 +252,15 @@ absl::Status WriteForestModel(const ChosenTree& tree, const Forest& forest,
   return WriteBytes(options.out, *glb, summary);
 }
 
+absl::Status FoliageFits(TreeFormat format, const TreeFileOptions& options) {
+  if (options.foliage == nullptr || format == TreeFormat::kGlb ||
+      format == TreeFormat::kObj) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(
+      "--foliage: goes into a .glb or .obj file, got \"" + options.out + "\"");
+}
+
 absl::Status OneLevel(const TreeFileOptions& options) {
   if (options.levels.size() == 1) return absl::OkStatus();
   return absl::InvalidArgumentError(
@@ -281,6 +293,8 @@ absl::Status WriteTree(const ChosenTree& tree, const TreeFileOptions& options,
     const absl::Status one = OneLevel(options);
     if (!one.ok()) return one;
   }
+  const absl::Status fits = FoliageFits(*format, options);
+  if (!fits.ok()) return fits;
   return IsRowFile(*format, tree, options)
              ? WriteRows(*format, tree, options, backend, std::move(stop),
                          summary)

@@ -3,6 +3,7 @@
 #ifndef TERRANE_CLIENT_COMMANDS_TREE_FILES_H_
 #define TERRANE_CLIENT_COMMANDS_TREE_FILES_H_
 
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/chosen_tree.h"
+#include "client/flower_model.h"
 #include "client/forest.h"
 #include "client/report.pb.h"
 #include "client/tree_backend.h"
@@ -31,6 +33,8 @@ struct TreeFileOptions {
   core::GltfInstancing instancing = core::GltfInstancing::kExtension;
   double metres_per_unit = 1;
   int picture_size = 900;  // pixels a side
+  // In place of leaves, in meshes of one tree; null: leaves are plain.
+  std::shared_ptr<const FlowerModel> foliage;
 };
 
 // Generates a tree and writes it.

@@ -9,6 +9,7 @@
 
 #include "core/base/det_math.h"
 #include "core/mesh/float3.h"
+#include "core/mesh/rotation.h"
 
 namespace terrane::core {
 namespace {
@@ -85,29 +86,7 @@ Mesh MakeLeafMesh(const LeafShape& shape) {
 }
 
 Quaternion LeafRotation(Float3 direction, Float3 normal) {
-  // The columns of the rotation's matrix; from the largest of the quaternion's
-  // parts, whose square is at least a quarter.
-  const Float3 x = direction;
-  const Float3 z = normal;
-  const Float3 y = Cross(z, x);
-  const std::array<float, 4> squares = {
-      1 + x.x - y.y - z.z, 1 - x.x + y.y - z.z, 1 - x.x - y.y + z.z,
-      1 + x.x + y.y + z.z};
-  const auto largest = static_cast<std::size_t>(
-      std::max_element(squares.begin(), squares.end()) - squares.begin());
-  const float twice = std::sqrt(squares[largest]);
-  const float part = 0.5f * twice;
-  const float rest = 0.5f / twice;
-  switch (largest) {
-    case 0:
-      return {part, rest * (x.y + y.x), rest * (z.x + x.z), rest * (y.z - z.y)};
-    case 1:
-      return {rest * (x.y + y.x), part, rest * (y.z + z.y), rest * (z.x - x.z)};
-    case 2:
-      return {rest * (z.x + x.z), rest * (y.z + z.y), part, rest * (x.y - y.x)};
-    default:
-      return {rest * (y.z - z.y), rest * (z.x - x.z), rest * (x.y - y.x), part};
-  }
+  return RotationTo(direction, Cross(normal, direction), normal);
 }
 
 }  // namespace terrane::core

@@ -20,6 +20,14 @@ inline Float3 Rotated(const Quaternion& q, Float3 v) {
   return v + q.w * twice + Cross(axis, twice);
 }
 
+// The rotation b, and then a.
+inline Quaternion Product(const Quaternion& a, const Quaternion& b) {
+  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+          a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z,
+          a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x,
+          a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+
 // The rotation that takes the axes to x, y and z: unit vectors at right angles,
 // z = x cross y.
 inline Quaternion RotationTo(Float3 x, Float3 y, Float3 z) {

@@ -12,7 +12,7 @@ namespace {
 // Of a path of a picture, until something was measured: a slow machine's.
 constexpr double kFirstNsPerPath = 5000;
 constexpr char kNoSubject[] =
-    "must be a terrain, a surface or a tree, got none";
+    "must be a terrain, a surface, a tree or a flower, got none";
 
 }  // namespace
 
@@ -31,6 +31,8 @@ OpenedScene RenderMaker::OpenScene(const v1::StreamRenderRequest& request,
       return OpenSurfaceScene(request.surface(), actor_->surfaces(), scene);
     case v1::StreamRenderRequest::kTree:
       return OpenTreeScene(request.tree(), actor_->trees(), scene);
+    case v1::StreamRenderRequest::kFlower:
+      return OpenFlowerScene(request.flower(), actor_->flowers(), scene);
     case v1::StreamRenderRequest::SUBJECT_NOT_SET:
       break;
   }
@@ -47,6 +49,8 @@ EstimatedScene RenderMaker::EstimateScene(
       return EstimateSurfaceScene(request.surface(), actor_->surfaces(), scene);
     case v1::StreamRenderRequest::kTree:
       return EstimateTreeScene(request.tree(), actor_->trees(), scene);
+    case v1::StreamRenderRequest::kFlower:
+      return EstimateFlowerScene(request.flower(), actor_->flowers(), scene);
     case v1::StreamRenderRequest::SUBJECT_NOT_SET:
       break;
   }

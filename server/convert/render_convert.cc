@@ -210,7 +210,9 @@ RenderPlan ReadRenderPlan(const v1::StreamRenderRequest& request,
   }
   ReadView(request.view(), root.Field("view"), &checks, &plan);
   ReadLight(request.light(), root.Field("light"), &checks, &plan);
-  plan.ground = request.has_ground() ? request.ground() : request.has_tree();
+  plan.ground = request.has_ground()
+                    ? request.ground()
+                    : request.has_tree() || request.has_flower();
   plan.ground_material = ReadMaterial(
       request.has_ground_material() ? &request.ground_material() : nullptr,
       UsualGround(), prefix + "ground_material.", violations);

@@ -17,6 +17,7 @@
 #include "core/base/violations.h"
 #include "core/mesh/scene.h"
 #include "core/raytrace/traced_scene.h"
+#include "server/actor/flower_maker.h"
 #include "server/actor/limits.h"
 #include "server/actor/surface_job.h"
 #include "server/actor/tree_maker.h"
@@ -61,6 +62,9 @@ OpenedScene OpenSurfaceScene(const v1::SurfaceSubject& subject,
                              const SceneRequest& request);
 OpenedScene OpenTreeScene(const v1::TreeSubject& subject,
                           const TreeMaker& trees, const SceneRequest& request);
+OpenedScene OpenFlowerScene(const v1::FlowerSubject& subject,
+                            const FlowerMaker& flowers,
+                            const SceneRequest& request);
 
 // What the scene holds at most, without making any of it. Of no meaning when a
 // violation was added.
@@ -74,6 +78,9 @@ EstimatedScene EstimateSurfaceScene(const v1::SurfaceSubject& subject,
 EstimatedScene EstimateTreeScene(const v1::TreeSubject& subject,
                                  const TreeMaker& trees,
                                  const SceneRequest& request);
+EstimatedScene EstimateFlowerScene(const v1::FlowerSubject& subject,
+                                   const FlowerMaker& flowers,
+                                   const SceneRequest& request);
 
 // Adds the violations of a generator's status: `to` stands for what its fields
 // have before their own path, `from`. OK when there were some; any other status

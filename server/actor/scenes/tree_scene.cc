@@ -4,9 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/mesh/float3.h"
-#include "core/mesh/rotation.h"
+#include "core/base/field_checks.h"
+#include "core/mesh/leaf_mesh.h"
 #include "server/actor/scenes/scene_source.h"
+#include "server/convert/non_zero.h"
 #include "server/convert/render_convert.h"
 
 namespace terrane::server {
@@ -28,36 +29,6 @@ core::Material UsualLeaf() {
   return material;
 }
 
-// A pointed leaf of length 1 along y, its upper face to +z, folded along its
-// midrib and hanging towards its tip.
-core::Mesh LeafMesh() {
-  struct Station {
-    float y, half_width, z;
-  };
-  constexpr Station kStations[] = {{0, 0.02f, 0},         {0.2f, 0.17f, 0.015f},
-                                   {0.45f, 0.24f, 0.02f}, {0.7f, 0.17f, 0},
-                                   {0.9f, 0.06f, -0.04f}, {1, 0.004f, -0.07f}};
-  constexpr float kFold = 0.22f;  // rise of the edge by its distance
-  core::Mesh leaf;
-  for (const Station& at : kStations) {
-    for (const float side : {-1.0f, 0.0f, 1.0f}) {
-      const float rise = side == 0 ? 0 : kFold * at.half_width;
-      leaf.positions.push_back({side * at.half_width, at.y, at.z + rise});
-      leaf.normals.push_back(core::Normalized({-0.7f * side * kFold, 0, 1}));
-    }
-  }
-  const auto stations = static_cast<std::uint32_t>(std::size(kStations));
-  for (std::uint32_t i = 0; i + 1 < stations; ++i) {
-    for (const std::uint32_t left : {3 * i, 3 * i + 1}) {
-      for (const std::uint32_t corner :
-           {left, left + 1, left + 4, left, left + 4, left + 3}) {
-        leaf.indices.push_back(corner);
-      }
-    }
-  }
-  return leaf;
-}
-
 // Appends the values of a bytes column.
 template <typename Value>
 void Append(const std::string& bytes, std::vector<Value>* column) {
@@ -73,13 +44,14 @@ class TreeScene : public SceneSource {
 
   // `leaves` is null for a tree without.
   TreeScene(Tubes tubes, Leaves leaves, const core::Material& bark,
-            const core::Material& leaf, const Limits& limits)
+            const core::Material& leaf, const core::LeafShape& shape,
+            const Limits& limits)
       : tubes_(std::move(tubes)),
         leaves_(std::move(leaves)),
         bark_(bark),
         leaf_(leaf),
         limits_(limits),
-        leaf_mesh_(LeafMesh()) {}
+        leaf_mesh_(core::MakeLeafMesh(shape)) {}
 
   const std::string& recipe_hash() const override {
     return tubes_->recipe_hash();
@@ -139,9 +111,8 @@ class TreeScene : public SceneSource {
     Append(rows.normals(), &normals);
     Append(rows.sizes(), &sizes);
     for (std::size_t i = 0; i < sizes.size(); ++i) {
-      const core::Float3 across = core::Cross(directions[i], normals[i]);
       places_.rotations.push_back(
-          core::RotationTo(across, directions[i], normals[i]));
+          core::LeafRotation(directions[i], normals[i]));
       places_.scales.push_back({sizes[i], sizes[i], sizes[i]});
     }
     return made;
@@ -164,25 +135,43 @@ class TreeScene : public SceneSource {
 constexpr std::int64_t kTrianglesOfRow = 96;
 constexpr std::int64_t kUsualSides = 12;
 
-struct TreeMaterials {
+struct TreeLook {
   core::Material bark;
   core::Material leaf;
+  core::LeafShape shape;
 };
 
-TreeMaterials MaterialsOf(const v1::TreeSubject& subject,
-                          const SceneRequest& request) {
+core::LeafShape ReadLeafShape(const v1::LeafShape& message,
+                              const std::string& prefix,
+                              core::Violations* violations) {
+  core::LeafShape shape;
+  ReadNonZero(message.width(), &shape.width);
+  ReadNonZero(message.blades(), &shape.blades);
+  ReadNonZero(message.spread_deg(), &shape.spread_deg);
+  core::FieldChecks checks(violations);
+  const core::Path root(&prefix);
+  checks.Number(root.Field("width"), shape.width, {0, 2, true, false});
+  checks.Integer(root.Field("blades"), shape.blades, 1, 32);
+  checks.Number(root.Field("spread_deg"), shape.spread_deg,
+                {0, 360, true, false});
+  return shape;
+}
+
+TreeLook LookOf(const v1::TreeSubject& subject, const SceneRequest& request) {
   const std::string path = request.prefix + "tree.";
   return {ReadMaterial(subject.has_bark() ? &subject.bark() : nullptr,
                        UsualBark(), path + "bark.", request.violations),
           ReadMaterial(subject.has_leaf() ? &subject.leaf() : nullptr,
-                       UsualLeaf(), path + "leaf.", request.violations)};
+                       UsualLeaf(), path + "leaf.", request.violations),
+          ReadLeafShape(subject.leaf_shape(), path + "leaf_shape.",
+                        request.violations)};
 }
 
 }  // namespace
 
 OpenedScene OpenTreeScene(const v1::TreeSubject& subject,
                           const TreeMaker& trees, const SceneRequest& request) {
-  const TreeMaterials materials = MaterialsOf(subject, request);
+  const TreeLook look = LookOf(subject, request);
   const std::string path = request.prefix + "tree.";
   v1::StreamTreeMeshRequest tubes;
   *tubes.mutable_tree() = subject.tree();
@@ -207,14 +196,14 @@ OpenedScene OpenTreeScene(const v1::TreeSubject& subject,
     leaf_run = *std::move(opened);
   }
   return std::make_unique<TreeScene>(*std::move(tube_run), std::move(leaf_run),
-                                     materials.bark, materials.leaf,
+                                     look.bark, look.leaf, look.shape,
                                      request.limits);
 }
 
 EstimatedScene EstimateTreeScene(const v1::TreeSubject& subject,
                                  const TreeMaker& trees,
                                  const SceneRequest& request) {
-  MaterialsOf(subject, request);
+  LookOf(subject, request);
   v1::EstimateTreeRequest asked;
   *asked.mutable_tree() = subject.tree();
   const auto estimate = trees.Estimate(asked);
