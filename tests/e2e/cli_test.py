@@ -394,6 +394,37 @@ class CliTest(unittest.TestCase):
             self.assertEqual(pixels.shape[0], 3)
             self.assertGreater(pixels.std(), 10, name)
 
+    def test_traced_pictures_are_the_same_from_the_server_and_locally(self):
+        subjects = [
+            ["--preset", "surface/fig07", "--size", "65x65", "--ground", "--shading", "blinn-phong"],
+            ["--preset", "demo/hills", "--window", "0,0,60,60"],
+        ]
+        for subject in subjects:
+            for extension in ["png", "exr"]:
+                remote, local = self.folder / f"r.{extension}", self.folder / f"l.{extension}"
+                choice = ["render", *subject, "--style", "traced", "--width", "90", "--height", "60", "--passes", "4"]
+                self.ask(*choice, "--out", remote)
+                self.run_terrane(*choice, "--local", "--out", local)
+                self.assertTrue(filecmp.cmp(remote, local, shallow=False), (subject, extension))
+            pixels = gdal.Open(str(self.folder / "l.png")).ReadAsArray()
+            self.assertEqual(pixels.shape, (3, 60, 90))
+            self.assertGreater(pixels.std(), 5)
+            # Debian's GDAL reads no OpenEXR.
+            self.assertEqual((self.folder / "l.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
+
+    def test_interrupt_ends_a_traced_picture(self):
+        process = subprocess.Popen(
+            [TERRANE, "render", "--preset", "surface/fig07", "--style", "traced", "--passes", "4096", "--server",
+             self.address, "--progress", "json", "--out", str(self.folder / "long.png")],
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.assertIn('"rendered"', process.stderr.readline())
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130, errors)
+        self.assertEqual(self.names(), [])
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + sys.argv[4:])
