@@ -1,11 +1,15 @@
 #include "core/raytrace/view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <vector>
 
 #include "core/base/det_math.h"
 #include "core/mesh/float3.h"
+#include "core/mesh/rotation.h"
 
 namespace terrane::core {
 namespace {
@@ -34,6 +38,65 @@ Float3 UpFor(const Direction& direction) {
   return Towards({direction.turn_deg + 180, 90 - direction.tilt_deg});
 }
 
+std::array<Float3, 8> CornersOf(const Bounds& bounds) {
+  std::array<Float3, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i] = {(i & 1) != 0 ? bounds.high.x : bounds.low.x,
+                  (i & 2) != 0 ? bounds.high.y : bounds.low.y,
+                  (i & 4) != 0 ? bounds.high.z : bounds.low.z};
+  }
+  return corners;
+}
+
+Bounds BoundsOf(const std::vector<Float3>& points) {
+  Bounds bounds = {points.front(), points.front()};
+  for (const Float3& p : points) {
+    bounds.low = {std::min(bounds.low.x, p.x), std::min(bounds.low.y, p.y),
+                  std::min(bounds.low.z, p.z)};
+    bounds.high = {std::max(bounds.high.x, p.x), std::max(bounds.high.y, p.y),
+                   std::max(bounds.high.z, p.z)};
+  }
+  return bounds;
+}
+
+// The nearest camera that looks at the middle of a box and sees every point
+// added: |x| <= slope (distance - depth).
+class Framing {
+ public:
+  Framing(const Bounds& bounds, const Direction& direction,
+          float field_of_view_deg, float aspect)
+      : centre_(CentreOf(bounds)),
+        back_(Towards(direction)),
+        up_(UpFor(direction)),
+        right_(Cross(up_, back_)),
+        field_of_view_deg_(field_of_view_deg),
+        up_slope_(kFilled * Tangent(0.5f * field_of_view_deg)),
+        right_slope_(up_slope_ * aspect),
+        distance_(0.1f * RadiusOf(bounds)) {}
+
+  void Add(Float3 point) {
+    const Float3 offset = point - centre_;
+    const float depth = Dot(offset, back_);
+    distance_ = std::max({distance_,
+                          depth + std::fabs(Dot(offset, right_)) / right_slope_,
+                          depth + std::fabs(Dot(offset, up_)) / up_slope_});
+  }
+
+  Camera camera() const {
+    return {centre_ + distance_ * back_, centre_, up_, field_of_view_deg_};
+  }
+
+ private:
+  const Float3 centre_;
+  const Float3 back_;
+  const Float3 up_;
+  const Float3 right_;
+  const float field_of_view_deg_;
+  const float up_slope_;
+  const float right_slope_;
+  float distance_;
+};
+
 }  // namespace
 
 Float3 Towards(const Direction& direction) {
@@ -51,27 +114,34 @@ float RadiusOf(const Bounds& bounds) {
 
 Camera FrameCamera(const Bounds& bounds, const Direction& direction,
                    float field_of_view_deg, float aspect) {
-  const Float3 centre = CentreOf(bounds);
-  const Float3 back = Towards(direction);
-  const Float3 up = UpFor(direction);
-  const Float3 right = Cross(up, back);
-  const float up_slope = kFilled * Tangent(0.5f * field_of_view_deg);
-  const float right_slope = up_slope * aspect;
-  // The nearest eye that sees each corner: |x| <= slope (distance - depth).
-  float distance = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Float3 offset =
-        Float3{(corner & 1) != 0 ? bounds.high.x : bounds.low.x,
-               (corner & 2) != 0 ? bounds.high.y : bounds.low.y,
-               (corner & 4) != 0 ? bounds.high.z : bounds.low.z} -
-        centre;
-    distance = std::max(
-        {distance,
-         Dot(offset, back) + std::fabs(Dot(offset, right)) / right_slope,
-         Dot(offset, back) + std::fabs(Dot(offset, up)) / up_slope});
+  Framing framing(bounds, direction, field_of_view_deg, aspect);
+  for (const Float3& corner : CornersOf(bounds)) framing.Add(corner);
+  return framing.camera();
+}
+
+Camera FrameScene(const Scene& scene, const Bounds& bounds,
+                  const Direction& direction, float field_of_view_deg,
+                  float aspect) {
+  Framing framing(bounds, direction, field_of_view_deg, aspect);
+  for (const SceneObject& object : scene.objects) {
+    const std::vector<Float3>& positions = object.mesh->positions;
+    if (object.instances == nullptr) {
+      for (const Float3& position : positions) framing.Add(position);
+      continue;
+    }
+    const Instances& places = *object.instances;
+    const std::array<Float3, 8> corners = CornersOf(BoundsOf(positions));
+    for (std::size_t i = 0; i < places.count(); ++i) {
+      const Float3 scale = places.scales[i];
+      for (const Float3& corner : corners) {
+        framing.Add(places.translations[i] +
+                    Rotated(places.rotations[i],
+                            {scale.x * corner.x, scale.y * corner.y,
+                             scale.z * corner.z}));
+      }
+    }
   }
-  distance = std::max(distance, RadiusOf(bounds));
-  return {centre + distance * back, centre, up, field_of_view_deg};
+  return framing.camera();
 }
 
 AreaLight PlaceLight(const Bounds& bounds, const LightPlace& place) {

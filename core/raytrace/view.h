@@ -61,6 +61,12 @@ Float3 Towards(const Direction& direction);
 Camera FrameCamera(const Bounds& bounds, const Direction& direction,
                    float field_of_view_deg, float aspect);
 
+// The same for what stands in the box, which is nearer to the edges: every
+// vertex, and the boxes of instances.
+Camera FrameScene(const Scene& scene, const Bounds& bounds,
+                  const Direction& direction, float field_of_view_deg,
+                  float aspect);
+
 // A square light that looks at the box from that direction. Distance and half
 // its side are in radii of the box; a plane in the middle of the box that faces
 // it receives `irradiance`, when the light is small.

@@ -80,8 +80,8 @@ class RenderRun : public HeadedRun<v1::StreamRenderResponse, v1::RenderHeader> {
     if (!traced.ok()) return traced.status();
     const core::Bounds& bounds = (*traced)->bounds();
     core::PictureSpec picture = plan_.picture;
-    picture.camera = core::FrameCamera(
-        bounds, plan_.view, plan_.field_of_view_deg,
+    picture.camera = core::FrameScene(
+        scene, bounds, plan_.view, plan_.field_of_view_deg,
         static_cast<float>(picture.width) / static_cast<float>(picture.height));
     picture.light = core::PlaceLight(bounds, plan_.light);
     if (plan_.ground) {

@@ -270,6 +270,27 @@ TEST(View, CameraSeesTheWholeBoxAndLittleElse) {
   }
 }
 
+TEST(View, SceneIsFramedByItsVerticesAndInstances) {
+  // A ball is nearer to its box than the box to its corners; instances count as
+  // what they stand for.
+  const Mesh ball = Ball(1, 32);
+  const Bounds box = {{-1, -1, -1}, {1, 1, 1}};
+  const float around = Length(FrameCamera(box, {30, 20}, 30, 1).eye);
+  const float closer =
+      Length(FrameScene(SceneOf(ball, {}), box, {30, 20}, 30, 1).eye);
+  // A ball of radius 1 fills 0.92 of the slope: its tangents do.
+  const float slope = 0.92f * std::tan(15 * std::numbers::pi_v<float> / 180);
+  EXPECT_NEAR(closer, std::sqrt(1 + 1 / (slope * slope)), 0.02f);
+  EXPECT_LT(closer, around);
+  Instances one;
+  one.translations = {{0, 0, 0}};
+  one.rotations = {{}};
+  one.scales = {{1, 1, 1}};
+  EXPECT_NEAR(
+      Length(FrameScene(SceneOf(ball, {}, &one), box, {30, 20}, 30, 1).eye),
+      around, 1e-3f);
+}
+
 TEST(View, TurnIsClockwiseFromSouthAndTiltUpwards) {
   EXPECT_NEAR(Towards({0, 0}).y, -1, 1e-6f);
   EXPECT_NEAR(Towards({90, 0}).x, -1, 1e-6f);
