@@ -18,6 +18,8 @@ constexpr double kSpacingOfTrunk = 3;
 // Whole numbers up to here are exact in the table's doubles.
 constexpr double kLargestSeed = 9007199254740992.0;
 
+// Of a forest as a scene: each is asked for on its own.
+constexpr std::int64_t kMostTrees = 100'000;
 // Vertices of all meshes: a GLB holds 4 GiB.
 constexpr std::size_t kMostVertices = 100'000'000;
 
@@ -154,6 +156,11 @@ absl::StatusOr<ForestModel> ForestModel::Stream(const Forest& forest,
                                                 const TreeModelOptions& options,
                                                 TreeBackend* backend,
                                                 std::stop_token stop) {
+  if (forest.count() > kMostTrees) {
+    return absl::InvalidArgumentError(
+        "a forest in one .glb has at most " + std::to_string(kMostTrees) +
+        " trees, got " + std::to_string(forest.count()));
+  }
   ForestModel model;
   Progress progress(options.progress, forest.count(), "trees");
   TreeModelOptions of_one = options;

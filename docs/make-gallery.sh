@@ -22,6 +22,11 @@ mkdir -p "$pictures" "$work"
 
 draws() { [[ $section == all || $section == "$1" ]]; }
 
+# Removes what the page showed.
+forget_pictures() {
+  [[ ! -f $page ]] || grep -oE 'gallery/[a-z0-9-]+\.png' "$page" | sort -u | sed 's|^|docs/|' | xargs -r rm -f
+}
+
 say() { printf '%s\n' "$@" >>"$page"; }
 
 # Commands run since the last picture, as a reader would type them.
@@ -113,7 +118,7 @@ surface() {
 
 draw_ground() {
 page=docs/gallery.md
-find "$pictures" -name '*.png' ! -name 'tree-*' -delete
+forget_pictures
 cat >"$page" <<'TEXT'
 # Gallery
 
@@ -252,7 +257,7 @@ surface surface/fig13 "Two ridges, one behind the other, with a valley between t
 
 draw_trees() {
 page=docs/gallery-trees.md
-find "$pictures" -name 'tree-*.png' -delete
+forget_pictures
 cat >"$page" <<'TEXT'
 # Gallery: trees
 

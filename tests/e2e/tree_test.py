@@ -230,6 +230,26 @@ class TreeTest(unittest.TestCase):
         self.local("--preset", "tree/oak", "--out", self.folder / "t.gif", expected=2)
         self.assertEqual([path.name for path in self.folder.iterdir()], ["trees.csv"])
 
+    def test_a_forest_that_is_too_large_is_refused_at_once(self):
+        for extension, limit in {"glb": "at most 100000 trees", "csv": "1000000"}.items():
+            done = self.local("--preset", "tree/oak", "--forest", "--count", 10**9, "--out", self.folder / f"t.{extension}", expected=1)
+            self.assertIn(limit, done.stderr)
+            self.assertIn("1000000000", done.stderr)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_an_interrupt_leaves_no_file(self):
+        choice = ["--preset", "tree/genetic", "--dim", "3", "--depth", "30", "--set", "length_mode=LENGTH_MODE_RELATIVE"]
+        for extension in ["csv", "glb"]:
+            process = subprocess.Popen(
+                [TERRANE, "tree", *choice, "--set", "max_segments=9000000", "--local", "--progress", "json",
+                 "--out", str(self.folder / f"t.{extension}")],
+                stderr=subprocess.PIPE, text=True)
+            self.assertIn("total", process.stderr.readline())  # on its way
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual(list(self.folder.iterdir()), [])
+
     def test_dry_run_estimates(self):
         estimate = json.loads(self.local("--preset", "tree/plain", "--dry-run", "--json").stdout)
         self.assertEqual(estimate["segments_most"], "1023")
