@@ -15,7 +15,10 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/flower_backend.h"
+#include "client/render_backend.h"
 #include "client/spot_table.h"
+#include "client/tree_backend.h"
 #include "core/grid/raster.h"
 #include "terrane/v1/info.pb.h"
 #include "terrane/v1/raster.pb.h"
@@ -82,6 +85,11 @@ class Backend {
   // The same for a table of spot heights.
   virtual absl::StatusOr<std::string> UploadSpotTable(
       std::shared_ptr<const SpotTable> table, std::stop_token stop) = 0;
+
+  // The other services; they live as long as this.
+  virtual TreeBackend& trees() = 0;
+  virtual FlowerBackend& flowers() = 0;
+  virtual RenderBackend& renders() = 0;
 };
 
 }  // namespace terrane::client

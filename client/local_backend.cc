@@ -129,7 +129,10 @@ absl::Status HandOut(const Job& job, MakeTile<Tile> make, int threads,
 
 LocalBackend::LocalBackend(int threads)
     : threads_(std::max(threads, 1)),
-      actor_(server::MakeActor(server::Limits(), threads_)) {}
+      actor_(server::MakeActor(server::Limits(), threads_)),
+      trees_(&actor_->trees()),
+      flowers_(&actor_->flowers()),
+      renders_(&actor_->renders()) {}
 
 absl::Status LocalBackend::StreamTiles(const v1::StreamTilesRequest& request,
                                        const OnHeader& on_header,
@@ -156,7 +159,7 @@ absl::Status LocalBackend::StreamSurface(
     const v1::StreamSurfaceRequest& request, const OnSurfaceHeader& on_header,
     const OnSurfaceTile& on_tile, std::stop_token stop) {
   const absl::StatusOr<std::shared_ptr<const server::SurfaceJob>> job =
-      actor_->OpenSurface(request);
+      actor_->surfaces().Open(request);
   if (!job.ok()) return job.status();
   SurfaceVerifier verifier(request);
   absl::Status status = verifier.CheckHeader((*job)->header());
@@ -204,12 +207,12 @@ absl::StatusOr<v1::GetServerInfoResponse> LocalBackend::GetServerInfo(
 
 absl::StatusOr<v1::EstimateSurfaceResponse> LocalBackend::EstimateSurface(
     const v1::EstimateSurfaceRequest& request, std::stop_token) {
-  return actor_->EstimateSurface(request);
+  return actor_->surfaces().Estimate(request);
 }
 
 absl::StatusOr<v1::GetSurfacePresetResponse> LocalBackend::GetSurfacePreset(
     const v1::GetSurfacePresetRequest& request, std::stop_token) {
-  return actor_->GetSurfacePreset(request);
+  return actor_->surfaces().GetPreset(request);
 }
 
 absl::StatusOr<std::string> LocalBackend::UploadRaster(

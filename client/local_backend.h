@@ -1,15 +1,18 @@
 // LocalBackend: the API in this process, without a network: the server's own
 // Actor, its tiles made by several threads and delivered in order.
 //
-// This pair of files is the one place of client/ that includes server/: the
-// Actor (server/actor) holds no gRPC. Memory: at most two tiles a thread wait
-// for delivery, however long the stream.
+// The files local_backend* are the one place of client/ that includes server/:
+// the Actor (server/actor) holds no gRPC. Memory: at most two tiles a thread
+// wait for delivery, however long the stream.
 #ifndef TERRANE_CLIENT_LOCAL_BACKEND_H_
 #define TERRANE_CLIENT_LOCAL_BACKEND_H_
 
 #include <memory>
 
 #include "client/backend.h"
+#include "client/local_backend_flowers.h"
+#include "client/local_backend_renders.h"
+#include "client/local_backend_trees.h"
 #include "server/actor/actor.h"
 
 namespace terrane::client {
@@ -51,10 +54,16 @@ class LocalBackend : public Backend {
       const v1::GetRasterRequest& request, std::stop_token stop) override;
   absl::StatusOr<std::string> UploadSpotTable(
       std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
+  TreeBackend& trees() override { return trees_; }
+  FlowerBackend& flowers() override { return flowers_; }
+  RenderBackend& renders() override { return renders_; }
 
  private:
   int threads_;
   std::unique_ptr<server::Actor> actor_;
+  LocalTrees trees_;
+  LocalFlowers flowers_;
+  LocalRenders renders_;
 };
 
 }  // namespace terrane::client

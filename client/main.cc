@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
   const Interrupt interrupt;
 
   CLI::App app(
-      "Fractal terrain and surfaces: from a server, or made here with --local.",
+      "Fractal terrain, surfaces, trees and flowers: from a server, or made "
+      "here with "
+      "--local.",
       "terrane");
   app.set_version_flag("--version", TERRANE_VERSION);
   app.require_subcommand(1);
@@ -22,6 +24,8 @@ int main(int argc, char** argv) {
   AddProfileCommand(&app, &action);
   AddHeightsCommand(&app, &action);
   AddSurfaceCommand(&app, &action);
+  AddTreeCommand(&app, &action);
+  AddFlowerCommand(&app, &action);
   AddRenderCommand(&app, &action);
   AddVerifyCommand(&app, &action);
   AddPresetsCommand(&app, &action);

@@ -55,35 +55,36 @@ void ProgressLine::PrintJson(const std::string& object) const {
   Print(object + '\n');
 }
 
-Progress::Progress(ProgressMode mode, std::int64_t total_samples)
-    : ProgressLine(mode), total_(std::max<std::int64_t>(total_samples, 1)) {}
+Progress::Progress(ProgressMode mode, std::int64_t total, std::string unit)
+    : ProgressLine(mode),
+      unit_(std::move(unit)),
+      total_(std::max<std::int64_t>(total, 1)) {}
 
-void Progress::Advance(std::int64_t samples) {
-  done_ += samples;
+void Progress::Advance(std::int64_t units) {
+  done_ += units;
   if (!IsDue(done_ >= total_)) return;
   if (form() == Form::kJson) {
-    PrintJson(fmt::format("{{\"samples\":{},\"total\":{},\"seconds\":{:.3f}}}",
-                          done_, total_, seconds()));
+    PrintJson(fmt::format("{{\"{}\":{},\"total\":{},\"seconds\":{:.3f}}}",
+                          unit_, done_, total_, seconds()));
     return;
   }
   const double rate =
       seconds() > 0 ? static_cast<double>(done_) / seconds() : 0;
   const double left = rate > 0 ? static_cast<double>(total_ - done_) / rate : 0;
-  DrawBar(
-      static_cast<double>(done_) / static_cast<double>(total_),
-      fmt::format("{}samples/s  {} left", ShortNumber(rate), ClockText(left)));
+  DrawBar(static_cast<double>(done_) / static_cast<double>(total_),
+          fmt::format("{}{}/s  {} left", ShortNumber(rate), unit_,
+                      ClockText(left)));
 }
 
-void PreparationProgress::Show(double fraction) {
+void ShareProgress::Show(double fraction) {
   if (!IsDue(fraction >= 1)) return;
   if (form() == Form::kJson) {
-    PrintJson(fmt::format("{{\"prepared\":{:.3f},\"seconds\":{:.3f}}}",
+    PrintJson(fmt::format("{{\"{}\":{:.3f},\"seconds\":{:.3f}}}", key_,
                           fraction, seconds()));
     return;
   }
   const double left = fraction > 0 ? seconds() * (1 - fraction) / fraction : 0;
-  DrawBar(fraction,
-          fmt::format("meeting spot heights  {} left", ClockText(left)));
+  DrawBar(fraction, fmt::format("{}  {} left", what_, ClockText(left)));
 }
 
 std::string ShortNumber(double value) {

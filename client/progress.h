@@ -40,25 +40,39 @@ class ProgressLine {
   Clock::time_point shown_;
 };
 
-// Of samples that are streamed.
+// Of samples that are streamed, or of other units.
 class Progress : private ProgressLine {
  public:
-  Progress(ProgressMode mode, std::int64_t total_samples);
+  Progress(ProgressMode mode, std::int64_t total, std::string unit = "samples");
 
-  void Advance(std::int64_t samples);
+  void Advance(std::int64_t units);
 
  private:
+  const std::string unit_;
   const std::int64_t total_;
   std::int64_t done_ = 0;
 };
 
-// Of a recipe that is made ready.
-class PreparationProgress : private ProgressLine {
+// Of work of which a share is done.
+class ShareProgress : private ProgressLine {
  public:
-  explicit PreparationProgress(ProgressMode mode) : ProgressLine(mode) {}
+  // `key` names the share in JSON, `what` is done in words.
+  ShareProgress(ProgressMode mode, const char* key, const char* what)
+      : ProgressLine(mode), key_(key), what_(what) {}
 
   // `fraction` of the work is done, 0 to 1.
   void Show(double fraction);
+
+ private:
+  const char* const key_;
+  const char* const what_;
+};
+
+// Of a recipe that is made ready.
+class PreparationProgress : public ShareProgress {
+ public:
+  explicit PreparationProgress(ProgressMode mode)
+      : ShareProgress(mode, "prepared", "meeting spot heights") {}
 };
 
 // "12.3 M": three digits and a unit of thousands.

@@ -1,22 +1,21 @@
 // RemoteBackend: the API of a server across the network, over gRPC.
 //
-// What it adds to the generated stubs: errors with their violations; every tile
-// verified; a cut stream resumed at the tile that is missing, with bounded,
-// jittered waits; a raster or spot table that the server has evicted uploaded
-// again, once a call. A server that was never reached is given up within a
-// second.
+// What it adds to the generated stubs: the patience of a RemoteCaller; every
+// tile verified; a raster or spot table that the server has evicted uploaded
+// again, once a call.
 #ifndef TERRANE_CLIENT_REMOTE_BACKEND_H_
 #define TERRANE_CLIENT_REMOTE_BACKEND_H_
 
 #include <functional>
 #include <map>
 #include <memory>
-#include <random>
 #include <string>
 
 #include "client/backend.h"
-#include "client/status_details.h"
-#include "client/tile_verifier.h"
+#include "client/remote_caller.h"
+#include "client/remote_flowers.h"
+#include "client/remote_renders.h"
+#include "client/remote_trees.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
 #include "terrane/v1/spot_table.grpc.pb.h"
@@ -62,21 +61,13 @@ class RemoteBackend : public Backend {
       const v1::GetRasterRequest& request, std::stop_token stop) override;
   absl::StatusOr<std::string> UploadSpotTable(
       std::shared_ptr<const SpotTable> table, std::stop_token stop) override;
+  TreeBackend& trees() override { return trees_; }
+  FlowerBackend& flowers() override { return flowers_; }
+  RenderBackend& renders() override { return renders_; }
 
  private:
-  // What became of one try of a call.
-  struct Attempt {
-    RemoteError error;
-    // Something new came before it failed: the server is there.
-    bool progressed = false;
-    // The failure is the caller's own (a full disk), so trying again is futile.
-    bool final = false;
-  };
-  enum class CallKind { kUnary, kStream };
+  using Attempt = RemoteCaller::Attempt;
 
-  absl::Status Run(CallKind kind, const std::function<Attempt()>& attempt,
-                   std::stop_token stop);
-  bool Wait(const RemoteError& error, int failures, std::stop_token stop);
   // Uploads content, and keeps how to do it again.
   using UploadContent = std::function<Attempt(std::stop_token, std::string*)>;
   absl::StatusOr<std::string> Upload(const UploadContent& upload,
@@ -89,29 +80,17 @@ class RemoteBackend : public Backend {
   Attempt PrepareOnce(const v1::PrepareTerrainRequest& request,
                       const OnPrepareProgress& on_progress,
                       std::stop_token stop, v1::PreparedTerrain* prepared);
-  // One try of a stream: `open` starts it at the tile that is missing, the
-  // verifier knows which.
-  template <typename Message, typename Open, typename Header, typename Tile,
-            typename Verifier>
-  Attempt StreamOnce(const Open& open, const Header& on_header,
-                     const Tile& on_tile, std::stop_token stop,
-                     Verifier* verifier);
-
-  // One unary call; `method` is a member of the stub.
-  template <typename Response, typename Stub, typename Method, typename Request>
-  absl::StatusOr<Response> Unary(Stub* stub, Method method,
-                                 const Request& request, std::stop_token stop);
-
-  std::string target_;
+  RemoteCaller caller_;
   std::unique_ptr<v1::TerrainService::Stub> terrain_;
   std::unique_ptr<v1::SurfaceService::Stub> surface_;
   std::unique_ptr<v1::RasterService::Stub> raster_;
   std::unique_ptr<v1::SpotTableService::Stub> spot_table_;
   std::unique_ptr<v1::InfoService::Stub> info_;
+  RemoteTrees trees_;
+  RemoteFlowers flowers_;
+  RemoteRenders renders_;
   // What was uploaded so far, by id.
   std::map<std::string, UploadContent> uploads_;
-  // Jitter of the waits; never touches a height.
-  std::mt19937 jitter_{std::random_device{}()};
 };
 
 }  // namespace terrane::client

@@ -1,20 +1,26 @@
 #!/usr/bin/env bash
-# Draws every picture of the gallery and writes docs/gallery.md around them:
-#   docs/make-gallery.sh [TERRANE]
-# TERRANE is the program to draw with, build/release/bin/terrane by default. It
-# generates in its own process (--local), so no server is needed. Intermediate
-# height files go to out/gallery. Run it again after a preset or the renderer has
-# changed, and look at what it drew.
+# Draws every picture of the gallery and writes its pages around them:
+#   docs/make-gallery.sh [--section ground|trees] [TERRANE]
+# ground is docs/gallery.md (terrain and surfaces), trees docs/gallery-trees.md;
+# both without --section. TERRANE is the program to draw with,
+# build/release/bin/terrane by default. It generates in its own process (--local),
+# so no server is needed. Intermediate height files go to out/gallery. Run it again
+# after a preset or the renderer has changed, and look at what it drew.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+section=all
+if [[ ${1:-} == --section ]]; then
+  section=$2
+  shift 2
+fi
 terrane=${1:-build/release/bin/terrane}
-page=docs/gallery.md
 pictures=docs/gallery
 work=out/gallery
 model=tests/data/jacksboro-3arcsec-4326.tif
 mkdir -p "$pictures" "$work"
-rm -f "$pictures"/*.png
+
+draws() { [[ $section == all || $section == "$1" ]]; }
 
 say() { printf '%s\n' "$@" >>"$page"; }
 
@@ -47,6 +53,49 @@ preset() {
 *What to see.* $look"
 }
 
+# tree NAME LOOK [OPTION...]: a preset of a tree.
+tree() {
+  local name=$1 look=$2 file=tree-${1#*/}
+  shift 2
+  local about title description
+  about=$("$terrane" presets "$name" --local)
+  title=$(sed -n '1s/^[^:]*: //p' <<<"$about")
+  description=$(sed -n 3p <<<"$about")
+  run tree --local --preset "$name" --size 600 "$@" --out "$pictures/$file.png"
+  say "### $title" ""
+  picture "$file" "$title" "$description
+
+*What to see.* $look"
+}
+
+# row FILE TEXT: pictures beside each other, FILE-0.png and on, as many as there are
+# commands since the last picture, with one caption.
+row() {
+  local file=$1 images="" number=0
+  for ((number = 0; number < ${#commands[@]}; ++number)); do
+    echo "$pictures/$file-$number.png"
+    images+="![$file $number](gallery/$file-$number.png) "
+  done
+  say "${images% }" "" "$2" "" '```sh' "${commands[@]}" '```' ""
+  commands=()
+}
+
+# sweep FILE FIELD VALUE... -- OPTION...: a row of trees, one a value of a field.
+sweep() {
+  local file=$1 field=$2 number=0
+  shift 2
+  local values=()
+  while [[ $1 != -- ]]; do
+    values+=("$1")
+    shift
+  done
+  shift
+  for value in "${values[@]}"; do
+    run tree --local "$@" --set "$field=$value" --size 220 --out "$pictures/$file-$number.png"
+    number=$((number + 1))
+  done
+}
+
 # surface NAME LOOK [OPTION...]: a preset of a surface.
 surface() {
   local name=$1 look=$2 file=surface-${1#*/}
@@ -62,6 +111,9 @@ surface() {
 *What to see.* $look"
 }
 
+draw_ground() {
+page=docs/gallery.md
+find "$pictures" -name '*.png' ! -name 'tree-*' -delete
 cat >"$page" <<'TEXT'
 # Gallery
 
@@ -77,7 +129,7 @@ root of the tree with `build/release/bin` in the path.
 - [Other readings of D](#other-readings-of-d)
 - [Free-form surfaces](#free-form-surfaces)
 
-How it all works is in [terrain.md](terrain.md) and [surface.md](surface.md).
+Trees have [a page of their own](gallery-trees.md). How it all works is in [terrain.md](terrain.md) and [surface.md](surface.md).
 
 ## A real elevation model, refined
 
@@ -196,3 +248,85 @@ surface surface/fig10 "Fractal in one part, level in the others. Heights are dra
 surface surface/fig11 "A high mountain with smooth flanks, and a lower, rough one behind it."
 surface surface/fig12 "A high dune behind and a lower one in front, sand between them, and a ragged hole in each hollow at the sides."
 surface surface/fig13 "Two ridges, one behind the other, with a valley between them; all of it is rough."
+}
+
+draw_trees() {
+page=docs/gallery-trees.md
+find "$pictures" -name 'tree-*.png' -delete
+cat >"$page" <<'TEXT'
+# Gallery: trees
+
+Drawn by [make-gallery.sh](make-gallery.sh), as [the ground's](gallery.md): every picture stands
+above the commands that draw it again.
+
+- [The paper's trees](#the-papers-trees)
+- [Species](#species)
+- [A tree, generation by generation](#a-tree-generation-by-generation)
+- [What a parameter does](#what-a-parameter-does)
+- [Many trees and levels of detail](#many-trees-and-levels-of-detail)
+
+How it works is in [tree.md](tree.md).
+
+TEXT
+say "## The paper's trees" "" "Wu and Zhou, Journal of Image and Graphics 13(8), 2008. The paper prints few numbers; radii are
+an addition of this project." ""
+tree tree/plain "Every fork is the same fork, only smaller: the tree has the symmetry of its maps."
+tree tree/genetic "Forks resemble each other, and none is like another. The trunk ends as a stub, for the paper's monopodial axis is not carried on."
+tree tree/all-monopodial "Branches leave the sides of straight axes that go on beyond them."
+tree tree/all-sympodial "No axis goes on: each ends in a fork."
+tree tree/all-left "The crown leans to the left."
+tree tree/all-right "The tree before, in a mirror."
+tree tree/sparse "Some sixty branches, and most of the picture is empty."
+tree tree/dense "Ten times as many branches in the same room."
+tree tree/cantor "Each line leaves out the middle thirds of the one above."
+tree tree/cantor-statistical "Gaps of all sizes, and no two halves alike."
+
+say "## Species" "" "In three dimensions, with radii, bending and leaves, all by the same operators; a parallel
+projection. Lengths are metres." ""
+tree tree/oak "A crown as round as it is high on a short trunk; limbs as thick as small trees."
+tree tree/birch "The white trunk can be followed to the top, and the twigs hang."
+tree tree/spruce "A narrow cone; the lowest tier is the widest."
+tree tree/poplar "Nothing sticks out: every branch turns upwards beside its axis."
+tree tree/willow "Limbs arch, twigs fall straight down, and the trunk stands upright."
+tree tree/pine "Half of the trunk is bare; the needles stand in clouds with air between."
+tree tree/acacia "Wider than high, with the leaves at the rim."
+
+say "## A tree, generation by generation" "" "The rows of a lower depth are the first rows of a higher one, so each picture holds the one before." ""
+for depth in 0 1 2 3 4 5 6 7; do
+  run tree --local --preset tree/genetic --depth "$depth" --size 220 --out "$pictures/tree-growth-$depth.png"
+done
+row tree-growth "The tree of figure 3b from its trunk to its eighth generation. The scale follows the tree."
+for depth in 0 1 2 3 4 5 6 7 8; do
+  run tree --local --preset tree/oak --depth "$depth" --size 220 --out "$pictures/tree-oak-growth-$depth.png"
+done
+row tree-oak-growth "The oak: leaves sit on the last two generations, whichever those are."
+
+say "## What a parameter does" ""
+sweep tree-monopodial genetic.monopodial_share 0 0.25 0.5 0.75 1 -- --preset tree/genetic
+row tree-monopodial "monopodial_share 0, 0.25, 0.5, 0.75, 1: from forks alone to axes alone."
+sweep tree-left genetic.left_share 0 0.25 0.5 0.75 1 -- --preset tree/genetic
+row tree-left "left_share 0, 0.25, 0.5, 0.75, 1: the crown moves from right to left."
+sweep tree-density genetic.density WANTED_LOW WANTED_ANY WANTED_HIGH -- --preset tree/genetic --set length_mode=LENGTH_MODE_RELATIVE --set genetic.population=64
+row tree-density "density LOW, ANY, HIGH, with relative lengths and populations of 64: long branches wide apart; no wish; short ones in tufts."
+sweep tree-angle genetic.angle_max_deg 35 50 65 80 95 -- --preset tree/oak
+row tree-angle "angle_max_deg 35, 50, 65, 80, 95: the oak opens."
+sweep tree-lateral genetic.lateral_share 0.3 0.45 0.6 0.8 -- --preset tree/spruce --depth 8 --set genetic.least_length=0.15
+row tree-lateral "lateral_share 0.3, 0.45, 0.6, 0.8: the axis rules less and less."
+sweep tree-gravity bending.gravity 0 0.4 0.8 1.2 1.6 -- --preset tree/willow --depth 6
+row tree-gravity "gravity 0, 0.4, 0.8, 1.2, 1.6: a willow begins to weep."
+sweep tree-pipes pipe_exponent 1.5 1.8 2 2.3 3 -- --preset tree/genetic
+row tree-pipes "pipe_exponent 1.5, 1.8, 2, 2.3, 3: twigs of the same lengths get thicker."
+
+say "## Many trees and levels of detail" ""
+for number in 0 1 2 3 4 5 6 7; do
+  run tree --local --preset tree/oak --seed "$((number + 1))" --size 220 --out "$pictures/tree-seeds-$number.png"
+done
+row tree-seeds "Eight oaks, seeds 1 to 8: one kind, eight trees."
+for number in 0 1 2 3; do
+  run tree --local --preset tree/oak --lod "$number" --size 300 --out "$pictures/tree-lod-$number.png"
+done
+row tree-lod "Levels of detail 0 to 3 of the oak: fewer generations, fewer faces, fewer and larger leaves, the same silhouette."
+}
+
+if draws ground; then draw_ground; fi
+if draws trees; then draw_trees; fi

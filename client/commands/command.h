@@ -16,6 +16,8 @@ void AddTerrainCommand(CLI::App* app, Action* action);
 void AddProfileCommand(CLI::App* app, Action* action);
 void AddHeightsCommand(CLI::App* app, Action* action);
 void AddSurfaceCommand(CLI::App* app, Action* action);
+void AddTreeCommand(CLI::App* app, Action* action);
+void AddFlowerCommand(CLI::App* app, Action* action);
 void AddRenderCommand(CLI::App* app, Action* action);
 void AddVerifyCommand(CLI::App* app, Action* action);
 void AddPresetsCommand(CLI::App* app, Action* action);

@@ -6,7 +6,9 @@
 #include <iostream>
 #include <memory>
 
+#include "client/chosen_flower.h"
 #include "client/chosen_surface.h"
+#include "client/chosen_tree.h"
 #include "client/commands/command.h"
 #include "client/commands/shared_options.h"
 #include "client/exit_code.h"
@@ -61,24 +63,39 @@ void Print(const PresetsCommand& command, const Preset& preset) {
   std::cout << recipe;
 }
 
-int Show(const PresetsCommand& command, Backend* backend,
-         std::stop_token stop) {
-  if (IsSurfacePreset(command.name)) {
-    v1::GetSurfacePresetRequest request;
-    request.set_name(command.name);
-    const absl::StatusOr<v1::GetSurfacePresetResponse> answer =
-        backend->GetSurfacePreset(request, stop);
-    if (!answer.ok()) return ReportStatus(answer.status());
-    Print(command, answer->preset());
-    return kExitOk;
-  }
-  v1::GetPresetRequest request;
-  request.set_name(command.name);
-  const absl::StatusOr<v1::GetPresetResponse> answer =
-      backend->GetPreset(request, stop);
+int ShowAnswer(const PresetsCommand& command, const auto& answer) {
   if (!answer.ok()) return ReportStatus(answer.status());
   Print(command, answer->preset());
   return kExitOk;
+}
+
+template <typename Request>
+Request AskFor(const std::string& name) {
+  Request request;
+  request.set_name(name);
+  return request;
+}
+
+int Show(const PresetsCommand& command, Backend* backend,
+         std::stop_token stop) {
+  const std::string& name = command.name;
+  if (IsSurfacePreset(name)) {
+    return ShowAnswer(command,
+                      backend->GetSurfacePreset(
+                          AskFor<v1::GetSurfacePresetRequest>(name), stop));
+  }
+  if (IsTreePreset(name)) {
+    return ShowAnswer(command,
+                      backend->trees().GetTreePreset(
+                          AskFor<v1::GetTreePresetRequest>(name), stop));
+  }
+  if (IsFlowerPreset(name)) {
+    return ShowAnswer(command,
+                      backend->flowers().GetFlowerPreset(
+                          AskFor<v1::GetFlowerPresetRequest>(name), stop));
+  }
+  return ShowAnswer(
+      command, backend->GetPreset(AskFor<v1::GetPresetRequest>(name), stop));
 }
 
 int Run(const PresetsCommand& command, std::stop_token stop) {

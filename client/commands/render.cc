@@ -11,8 +11,9 @@
 
 #include "client/chosen_spots.h"
 #include "client/commands/command.h"
+#include "client/commands/render_command.h"
+#include "client/commands/render_traced.h"
 #include "client/commands/shared_options.h"
-#include "client/commands/surface_options.h"
 #include "client/csv.h"
 #include "client/exit_code.h"
 #include "client/memory_stream.h"
@@ -33,34 +34,11 @@ constexpr char kFooter[] = R"(Examples:
   terrane render profile.csv --out plot.png
   terrane render --preset fbm/fig06b --out fig06b.png
   terrane render --side-by-side model.tif finer.tif --out both.png
+  terrane render --preset demo/alps --style traced --out alps.png
 A preset brings its own style, level, water and marks; options override them.)";
 
 // What is drawn pixel by pixel in memory.
 constexpr std::int64_t kMaxSamples = std::int64_t{1} << 27;
-
-struct RenderCommand {
-  ConnectionOptions connection;
-  TerrainOptions terrain;
-  ExtentOptions extent;
-  std::string input;
-  std::vector<std::string> side_by_side;
-  int band = 0;
-  std::string out;
-  std::optional<v1::RenderStyle> style;
-  std::optional<double> exaggeration;
-  std::optional<double> water_level;
-  std::vector<double> marks;
-  bool show_spots = false;
-  std::vector<double> light;  // azimuth, altitude; empty: by style
-  double turn_deg = PerspectiveOptions().turn_deg;
-  double tilt_deg = PerspectiveOptions().tilt_deg;
-  std::optional<int> width;
-  std::string title;
-  // Surfaces.
-  SurfaceOptions surface;
-  SurfaceSize size;
-  bool control_net = false;
-};
 
 core::Light LightOf(const RenderCommand& command, const core::Light& usual) {
   if (command.light.empty()) return usual;
@@ -240,11 +218,9 @@ absl::StatusOr<Picture> DrawGeneratedField(const RenderCommand& command,
   *request.mutable_terrain() = terrain.choice;
   request.set_level(level);
   request.set_sampling(command.extent.sampling);
-  if (!command.extent.window.empty()) {
-    *request.mutable_window() = WindowOf(command.extent.window);
-  } else if (terrain.view.has_window() && level == terrain.view.level()) {
-    *request.mutable_window() = terrain.view.window();
-  }
+  const std::optional<v1::Window> window =
+      WindowToDraw(command, terrain, level);
+  if (window.has_value()) *request.mutable_window() = *window;
   absl::StatusOr<PlacedRaster> placed =
       StreamToMemory(request, kMaxSamples, backend, stop);
   if (!placed.ok()) return placed.status();
@@ -265,27 +241,6 @@ absl::StatusOr<Picture> DrawGeneratedField(const RenderCommand& command,
                    map->height / static_cast<double>(raster.height), terrain);
 }
 
-// The preset's view, where no option says otherwise.
-RenderCommand WithView(RenderCommand command, const ChosenTerrain& terrain) {
-  const v1::PresetView& view = terrain.view;
-  if (!command.style.has_value()) {
-    command.style = view.style() == v1::RENDER_STYLE_UNSPECIFIED
-                        ? v1::RENDER_STYLE_RELIEF
-                        : view.style();
-  }
-  if (!command.exaggeration.has_value() && view.exaggeration() > 0) {
-    command.exaggeration = view.exaggeration();
-  }
-  if (!command.water_level.has_value() && view.has_water_level()) {
-    command.water_level = view.water_level();
-  }
-  if (command.marks.empty()) {
-    command.marks.assign(view.marks().begin(), view.marks().end());
-  }
-  if (command.title.empty()) command.title = terrain.title;
-  return command;
-}
-
 absl::StatusOr<Picture> DrawGenerated(const RenderCommand& command,
                                       std::stop_token stop) {
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
@@ -304,26 +259,18 @@ absl::StatusOr<Picture> DrawGenerated(const RenderCommand& command,
              : DrawGeneratedField(viewed, *terrain, level, backend.get(), stop);
 }
 
-// A surface is chosen by a preset's name, or by a net.
-bool IsSurface(const RenderCommand& command) {
-  return IsSurfacePreset(command.terrain.preset) ||
-         !command.surface.net_file.empty();
-}
-
 absl::StatusOr<Picture> DrawSurfacePicture(const RenderCommand& command,
                                            std::stop_token stop) {
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
-  SurfaceOptions surface = command.surface;
-  surface.preset = command.terrain.preset;
-  surface.seed = command.terrain.seed;
   SurfaceViewOptions options;
   options.width = command.width.value_or(options.width);
   options.turn_deg = command.turn_deg;
   options.tilt_deg = command.tilt_deg;
   options.exaggeration = command.exaggeration.value_or(1);
   options.light = LightOf(command, options.light);
-  return DrawSurface(surface, command.size, command.control_net, options,
-                     backend.get(), std::move(stop));
+  return DrawSurface(SurfaceOptionsOf(command), command.size,
+                     command.control_net, options, backend.get(),
+                     std::move(stop));
 }
 
 std::string CaptionOf(const std::string& path, const PlacedRaster& placed,
@@ -364,6 +311,13 @@ absl::StatusOr<Picture> DrawSideBySide(const RenderCommand& command) {
 }
 
 int Run(const RenderCommand& command, std::stop_token stop) {
+  if (IsTraced(command)) {
+    return ReportStatus(WriteTraced(command, std::move(stop)));
+  }
+  if (!command.out.ends_with(".png")) {
+    return ReportStatus(absl::InvalidArgumentError(
+        "--out: must end in .png unless traced, got \"" + command.out + "\""));
+  }
   if (!Canvas::HasFont()) {
     std::cerr << "terrane: font DejaVuSans not found (package "
                  "fonts-dejavu-core): pictures have no text\n";
@@ -375,67 +329,6 @@ int Run(const RenderCommand& command, std::stop_token stop) {
                                     : DrawGenerated(command, stop);
   if (!picture.ok()) return ReportStatus(picture.status());
   return ReportStatus(WritePicture(command.out, *picture));
-}
-
-const std::map<std::string, v1::RenderStyle> kStyles = {
-    {"relief", v1::RENDER_STYLE_RELIEF},
-    {"hillshade", v1::RENDER_STYLE_HILLSHADE},
-    {"grey", v1::RENDER_STYLE_GREY},
-    {"perspective", v1::RENDER_STYLE_PERSPECTIVE}};
-
-void AddPictureOptions(CLI::App* app, RenderCommand* command) {
-  app->add_option("--style", command->style,
-                  "relief (default), hillshade, grey or perspective; profiles "
-                  "are always plotted")
-      ->transform(OneOf(kStyles))
-      ->type_name("NAME")
-      ->group("Picture");
-  app->add_option("--exaggeration", command->exaggeration,
-                  "Multiplies the heights (default: 1; perspective: so that "
-                  "the relief is a ninth of the width)")
-      ->check(CLI::PositiveNumber)
-      ->group("Picture");
-  app->add_option("--water-level", command->water_level,
-                  "Heights below are drawn as a sheet of water")
-      ->group("Picture");
-  app->add_option("--marks", command->marks,
-                  "X,X,...: verticals in a plotted profile")
-      ->delimiter(',')
-      ->group("Picture");
-  app->add_flag("--show-spots", command->show_spots,
-                "Draw the spot heights' points and lines on a generated map")
-      ->group("Picture");
-  app->add_option("--light", command->light,
-                  "AZIMUTH,ALTITUDE of the light in degrees (default: 315,45; "
-                  "perspective: 270,45)")
-      ->delimiter(',')
-      ->expected(2)
-      ->type_name("AZ,ALT")
-      ->group("Picture");
-  app->add_option("--turn", command->turn_deg,
-                  "Perspective: degrees clockwise from south")
-      ->capture_default_str()
-      ->group("Picture");
-  app->add_option("--tilt", command->tilt_deg,
-                  "Perspective: degrees above the horizon")
-      ->check(CLI::Range(1.0, 90.0))
-      ->capture_default_str()
-      ->group("Picture");
-  app->add_option("--width", command->width,
-                  "Pixels (default: 1 a sample; plots and perspective 1200; "
-                  "side by side 1000 each)")
-      ->check(CLI::Range(16, 16384))
-      ->group("Picture");
-  app->add_option("--title", command->title, "Title of a plot")
-      ->group("Picture");
-  app->add_option("--out", command->out, "PNG file to write")
-      ->required()
-      ->check([](const std::string& path) {
-        return std::filesystem::path(path).extension() == ".png"
-                   ? std::string()
-                   : "must end in .png, got \"" + path + "\"";
-      })
-      ->group("Picture");
 }
 
 }  // namespace
@@ -464,6 +357,7 @@ void AddRenderCommand(CLI::App* app, Action* action) {
   AddExtentOptions(subcommand, &command->extent);
   AddNetOptions(subcommand, &command->surface);
   AddSizeOption(subcommand, &command->size);
+  AddTracedOptions(subcommand, &command->traced);
   subcommand
       ->add_flag("--control-net", command->control_net,
                  "Draw the control polyhedron of a surface, too")

@@ -96,6 +96,19 @@ absl::Status SetSize(const SurfaceSize& size, const v1::SurfaceView& view,
   return absl::OkStatus();
 }
 
+absl::StatusOr<v1::StreamSurfaceRequest> AskForSurface(
+    const SurfaceOptions& surface, const SurfaceSize& size, Backend* backend,
+    std::stop_token stop) {
+  const absl::StatusOr<ChosenSurface> chosen =
+      ChooseSurface(surface, backend, std::move(stop));
+  if (!chosen.ok()) return chosen.status();
+  v1::StreamSurfaceRequest request;
+  *request.mutable_surface()->mutable_recipe() = chosen->recipe;
+  const absl::Status sized = SetSize(size, chosen->view, &request);
+  if (!sized.ok()) return sized;
+  return request;
+}
+
 absl::StatusOr<Picture> DrawSurface(const SurfaceOptions& surface,
                                     const SurfaceSize& size, bool control_net,
                                     const SurfaceViewOptions& view,

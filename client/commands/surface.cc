@@ -27,10 +27,10 @@ constexpr char kFooter[] = R"(Examples:
 --out by extension: .glb .obj (meshes); .tif .png (16-bit) .exr .r16 .f32
 (heights, for nets that are a graph over x and y). Exit codes: as terrain.)";
 
-const core::GltfMaterial kMaterial = {.name = "ground",
-                                      .base_color = {0.6f, 0.45f, 0.26f, 1.0f},
-                                      .roughness = 0.9f,
-                                      .double_sided = true};
+const core::Material kMaterial = {.name = "ground",
+                                  .base_color = {0.6f, 0.45f, 0.26f},
+                                  .roughness = 0.9f,
+                                  .double_sided = true};
 
 struct SurfaceCommand {
   ConnectionOptions connection;
@@ -77,10 +77,11 @@ int PrintEstimate(const v1::StreamSurfaceRequest& request, bool json,
 
 absl::StatusOr<std::string> EncodeMesh(const std::string& path,
                                        const core::Mesh& mesh) {
+  const core::Scene scene = {{kMaterial}, {{"surface", &mesh, 0}}};
   if (std::filesystem::path(path).extension() == ".obj") {
-    return core::EncodeObj(mesh, "surface");
+    return core::EncodeObj(scene, "");
   }
-  return core::EncodeGlb({{kMaterial}, {{"surface", &mesh, 0}}});
+  return core::EncodeGlb(scene);
 }
 
 absl::Status WriteMesh(const SurfaceCommand& command,

@@ -25,6 +25,11 @@ void AddSizeOption(CLI::App* command, SurfaceSize* size);
 absl::Status SetSize(const SurfaceSize& size, const v1::SurfaceView& view,
                      v1::StreamSurfaceRequest* request);
 
+// The request for a surface, as its options and its preset's view say.
+absl::StatusOr<v1::StreamSurfaceRequest> AskForSurface(
+    const SurfaceOptions& surface, const SurfaceSize& size, Backend* backend,
+    std::stop_token stop);
+
 // Generates a surface and draws it; with `control_net`, or when its view says
 // so, with the control polyhedron.
 absl::StatusOr<Picture> DrawSurface(const SurfaceOptions& surface,

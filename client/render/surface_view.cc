@@ -11,6 +11,8 @@ namespace terrane::client {
 namespace {
 
 constexpr Rgb kGround{0.80, 0.70, 0.54};
+// From linear light to what a screen shows.
+constexpr double kDisplayPower = 1 / 2.2;
 constexpr Rgb kNetLine{0.16, 0.32, 0.55};
 constexpr double kNetLineWidth = 1.6;
 constexpr double kDotWidth = 7;
@@ -41,14 +43,20 @@ class Viewpoint {
     max_y_ = std::max(max_y_, seen.y);
   }
 
-  // Fits what was included into pictures of this width.
-  void Fit(int width) {
-    margin_ = kMarginShare * width;
+  // Fits what was included into pictures of this width, and of this height at
+  // most.
+  void Fit(int width, int most_height) {
+    const double margin = kMarginShare * width;
     const double extent = std::max(max_x_ - min_x_, 1e-30);
-    scale_ = (width - 2 * margin_) / extent;
+    const double rise = max_y_ - min_y_;
+    scale_ = (width - 2 * margin) / extent;
+    left_ = top_ = margin;
+    if (most_height > 0 && rise * scale_ > most_height - 2 * margin) {
+      scale_ = (most_height - 2 * margin) / rise;
+      left_ = (width - extent * scale_) / 2;
+    }
     height_ = std::clamp(
-        static_cast<int>(std::ceil((max_y_ - min_y_) * scale_ + 2 * margin_)),
-        1, 8 * width);
+        static_cast<int>(std::ceil(rise * scale_ + 2 * margin)), 1, 8 * width);
   }
 
   int height() const { return height_; }
@@ -56,8 +64,8 @@ class Viewpoint {
   // Pixels, y down.
   DepthPoint Project(const core::Float3& point) const {
     const DepthPoint seen = Seen(point);
-    return {margin_ + (seen.x - min_x_) * scale_,
-            margin_ + (max_y_ - seen.y) * scale_, seen.distance};
+    return {left_ + (seen.x - min_x_) * scale_,
+            top_ + (max_y_ - seen.y) * scale_, seen.distance};
   }
 
  private:
@@ -80,12 +88,23 @@ class Viewpoint {
   double max_x_ = -std::numeric_limits<double>::infinity();
   double min_y_ = std::numeric_limits<double>::infinity();
   double max_y_ = -std::numeric_limits<double>::infinity();
-  double margin_ = 0;
+  double left_ = 0;  // of what is seen, in pixels
+  double top_ = 0;
   double scale_ = 1;
   int height_ = 1;
 };
 
-Rgb Shaded(const core::Float3& normal, const SurfaceViewOptions& options) {
+Rgb ColourOf(const core::Mesh& mesh, std::size_t vertex) {
+  if (mesh.colors.empty()) return kGround;
+  const core::Float3& linear = mesh.colors[vertex];
+  const auto shown = [](float part) {
+    return std::pow(static_cast<double>(part), kDisplayPower);
+  };
+  return {shown(linear.x), shown(linear.y), shown(linear.z)};
+}
+
+Rgb Shaded(const Rgb& colour, const core::Float3& normal,
+           const SurfaceViewOptions& options) {
   // Heights that are stretched flatten the normal.
   const double x = static_cast<double>(normal.x);
   const double y = static_cast<double>(normal.y);
@@ -95,7 +114,7 @@ Rgb Shaded(const core::Float3& normal, const SurfaceViewOptions& options) {
       std::fabs(x * light.east + y * light.north + z * light.up) /
       std::sqrt(x * x + y * y + z * z);
   const double shade = kAmbient + (1 - kAmbient) * lit;
-  return {kGround.red * shade, kGround.green * shade, kGround.blue * shade};
+  return {colour.red * shade, colour.green * shade, colour.blue * shade};
 }
 
 void DrawNet(const ControlPolyhedron& net, const Viewpoint& view,
@@ -127,13 +146,14 @@ Picture RenderSurface(const core::Mesh& mesh, const ControlPolyhedron& net,
   Viewpoint view(options);
   for (const core::Float3& point : mesh.positions) view.Include(point);
   for (const core::Float3& point : net.points) view.Include(point);
-  view.Fit(options.width * kSupersampling);
+  view.Fit(options.width * kSupersampling,
+           options.most_height * kSupersampling);
 
   std::vector<DepthPoint> seen;
   std::vector<Rgb> colours;
   for (std::size_t k = 0; k < mesh.positions.size(); ++k) {
     seen.push_back(view.Project(mesh.positions[k]));
-    colours.push_back(Shaded(mesh.normals[k], options));
+    colours.push_back(Shaded(ColourOf(mesh, k), mesh.normals[k], options));
   }
   DepthCanvas depth(options.width * kSupersampling, view.height());
   for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {

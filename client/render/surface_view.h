@@ -23,6 +23,9 @@ struct ControlPolyhedron {
 struct SurfaceViewOptions {
   // Of the picture, in pixels; its height follows from what is seen.
   int width = 1200;
+  // Where the picture would be higher than this, what is seen is drawn smaller,
+  // in the middle; 0: as high as it comes.
+  int most_height = 0;
   // Degrees from which the viewer looks: clockwise from south, and above the
   // horizon.
   double turn_deg = 28;
@@ -32,7 +35,7 @@ struct SurfaceViewOptions {
   core::Light light = {-0.70710678118654752, 0, 0.70710678118654752};
 };
 
-// `mesh` has normals and one vertex at least.
+// `mesh` has normals and one vertex at least; without colours it is of sand.
 Picture RenderSurface(const core::Mesh& mesh, const ControlPolyhedron& net,
                       const SurfaceViewOptions& options);
 

@@ -13,10 +13,15 @@ namespace {
 
 constexpr std::int64_t kRoot = -1;
 
+// The lines of one tree.
 class SwcWriter {
  public:
-  explicit SwcWriter(const SegmentBlock& tree)
-      : tree_(tree), children_(tree.rows()), joint_of_(tree.rows(), kRoot) {
+  // Ids go on from `*nodes`.
+  SwcWriter(const SegmentBlock& tree, std::int64_t* nodes)
+      : tree_(tree),
+        nodes_(*nodes),
+        children_(tree.rows()),
+        joint_of_(tree.rows(), kRoot) {
     for (std::size_t row = 0; row < tree.rows(); ++row) {
       if (tree.parent[row] != kNoParent) {
         children_[tree.parent[row]].push_back(row);
@@ -25,7 +30,6 @@ class SwcWriter {
   }
 
   std::string Write() {
-    text_ = "# id type x y z radius parent\n";
     for (std::size_t row = 0; row < tree_.rows(); ++row) WriteRow(row);
     return std::move(text_);
   }
@@ -72,16 +76,22 @@ class SwcWriter {
   }
 
   const SegmentBlock& tree_;
+  std::int64_t& nodes_;
   std::vector<std::vector<std::size_t>> children_;
   std::vector<std::int64_t> joint_of_;  // the node that a row hangs on
-  std::int64_t nodes_ = 0;
   std::string text_;
 };
 
 }  // namespace
 
 std::string EncodeSwc(const SegmentBlock& tree) {
-  return SwcWriter(tree).Write();
+  return SwcForest::Header() + SwcForest().Add(tree);
+}
+
+std::string SwcForest::Header() { return "# id type x y z radius parent\n"; }
+
+std::string SwcForest::Add(const SegmentBlock& tree) {
+  return SwcWriter(tree, &nodes_).Write();
 }
 
 }  // namespace terrane::core

@@ -11,6 +11,7 @@
 #ifndef TERRANE_CORE_CODEC_SWC_H_
 #define TERRANE_CORE_CODEC_SWC_H_
 
+#include <cstdint>
 #include <string>
 
 #include "core/mesh/segment_block.h"
@@ -21,8 +22,21 @@ inline constexpr int kSwcStart = 5;
 inline constexpr int kSwcEnd = 6;
 inline constexpr int kSwcJoint = 7;
 
-// `tree` holds all rows of a tree, from row 0 on. The z axis points up.
+// The z axis points up. `tree` holds all rows of a tree, from row 0 on.
 std::string EncodeSwc(const SegmentBlock& tree);
+
+// A forest as one text: trees one after the other, each with a root of its own,
+// node ids going on from tree to tree. Belongs to one thread.
+class SwcForest {
+ public:
+  // The first line.
+  static std::string Header();
+  // The lines of the next tree.
+  std::string Add(const SegmentBlock& tree);
+
+ private:
+  std::int64_t nodes_ = 0;
+};
 
 }  // namespace terrane::core
 

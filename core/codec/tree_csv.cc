@@ -10,10 +10,10 @@
 namespace terrane::core {
 namespace {
 
-constexpr char kHeader[] =
+constexpr char kColumns[] =
     "radius,length,start_x,start_y,start_z,axis_x,axis_y,axis_z,parent,"
     "extension,branch,branch_order,position_in_branch,end_x,end_y,end_z,"
-    "radius_end,attach,flags,chromosome\n";
+    "radius_end,attach,flags,chromosome";
 
 // Where a row lies in its branch.
 struct Place {
@@ -49,33 +49,55 @@ void AppendNumbers(Float3 p, std::string* text) {
   for (const float number : {p.x, p.y, p.z}) AppendNumber(',', number, text);
 }
 
-}  // namespace
-
-std::string EncodeTreeCsv(const SegmentBlock& tree) {
+// The lines of one tree, behind `lines` of others; `tail` ends each.
+void AppendLines(const SegmentBlock& tree, std::uint32_t lines,
+                 const std::string& tail, std::string* text) {
   const std::vector<Place> places = PlacesOf(tree);
-  std::string text = kHeader;
   for (std::size_t row = 0; row < tree.rows(); ++row) {
     const Place& place = places[row];
     const Float3 along = tree.end[row] - tree.start[row];
     const float length = Length(along);
-    AppendNumber(tree.radius_start[row], &text);
-    AppendNumber(',', length, &text);
-    AppendNumbers(tree.start[row], &text);
-    AppendNumbers(length > 0 ? (1.0f / length) * along : Float3{0, 0, 1},
-                  &text);
-    // The trunk's parent, all ones, wraps to 0.
-    AppendNumber(',', tree.parent[row] + 1, &text);
-    AppendNumber(',', place.extension, &text);
-    AppendNumber(',', place.branch, &text);
-    AppendNumber(',', place.order, &text);
-    AppendNumber(',', place.position, &text);
-    AppendNumbers(tree.end[row], &text);
-    AppendNumber(',', tree.radius_end[row], &text);
-    AppendNumber(',', tree.attach[row], &text);
-    AppendNumber(',', static_cast<unsigned>(tree.flags[row]), &text);
-    AppendNumber(',', tree.chromosome[row], &text);
-    text.push_back('\n');
+    AppendNumber(tree.radius_start[row], text);
+    AppendNumber(',', length, text);
+    AppendNumbers(tree.start[row], text);
+    AppendNumbers(length > 0 ? (1.0f / length) * along : Float3{0, 0, 1}, text);
+    const std::uint32_t parent = tree.parent[row];
+    AppendNumber(',', parent == kNoParent ? 0 : lines + parent + 1, text);
+    AppendNumber(',', place.extension == 0 ? 0 : lines + place.extension, text);
+    AppendNumber(',', place.branch, text);
+    AppendNumber(',', place.order, text);
+    AppendNumber(',', place.position, text);
+    AppendNumbers(tree.end[row], text);
+    AppendNumber(',', tree.radius_end[row], text);
+    AppendNumber(',', tree.attach[row], text);
+    AppendNumber(',', static_cast<unsigned>(tree.flags[row]), text);
+    AppendNumber(',', tree.chromosome[row], text);
+    *text += tail;
+    text->push_back('\n');
   }
+}
+
+}  // namespace
+
+std::string EncodeTreeCsv(const SegmentBlock& tree) {
+  std::string text = kColumns;
+  text.push_back('\n');
+  AppendLines(tree, 0, "", &text);
+  return text;
+}
+
+std::string TreeCsvForest::Header() {
+  std::string text = kColumns;
+  text += ",tree\n";
+  return text;
+}
+
+std::string TreeCsvForest::Add(const SegmentBlock& tree) {
+  std::string number;
+  AppendNumber(',', trees_++, &number);
+  std::string text;
+  AppendLines(tree, lines_, number, &text);
+  lines_ += static_cast<std::uint32_t>(tree.rows());
   return text;
 }
 

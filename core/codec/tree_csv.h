@@ -14,6 +14,7 @@
 #ifndef TERRANE_CORE_CODEC_TREE_CSV_H_
 #define TERRANE_CORE_CODEC_TREE_CSV_H_
 
+#include <cstdint>
 #include <string>
 
 #include "core/mesh/segment_block.h"
@@ -22,6 +23,21 @@ namespace terrane::core {
 
 // `tree` holds all rows of a tree, from row 0 on.
 std::string EncodeTreeCsv(const SegmentBlock& tree);
+
+// A forest as one text: trees one after the other, with one more column, tree,
+// that counts them from 0. Lines are counted through the whole text, branches
+// from 1 in each tree. Belongs to one thread.
+class TreeCsvForest {
+ public:
+  // The first line.
+  static std::string Header();
+  // The lines of the next tree.
+  std::string Add(const SegmentBlock& tree);
+
+ private:
+  std::uint32_t lines_ = 0;
+  std::uint32_t trees_ = 0;
+};
 
 }  // namespace terrane::core
 

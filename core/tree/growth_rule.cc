@@ -57,6 +57,8 @@ GrowthRule::GrowthRule(const TreeSpec& spec)
               (spec.form == TreeForm::kCantor && spec.cantor.statistical)),
       plain_deviation_(SineCosineOfDegrees(spec.plain.angle_deg)),
       crown_taper_(static_cast<float>(spec.genetic.crown_taper)),
+      lateral_share_(static_cast<float>(spec.genetic.lateral_share)),
+      least_length_(static_cast<float>(spec.genetic.least_length)),
       azimuth_spread_(static_cast<std::int64_t>(
           spec.genetic.azimuth_spread_deg / 360 * kTurn)) {
   const GeneticSpec& genetic = spec.genetic;
@@ -168,9 +170,11 @@ bool GrowthRule::LimitLength(const Branch& parent, PlannedChild* child) const {
   if (spec_.length_mode == LengthMode::kRelative) {
     const bool lateral =
         IsMonopodial(parent.chromosome) && (child->flags & kLeaderFlag) == 0;
-    const float taper = lateral ? crown_taper_ * child->position : 0.0f;
-    child->length = parent.length * lengths_[code] * (1.0f - taper);
-    return true;
+    const float share =
+        lateral ? lateral_share_ * (1.0f - crown_taper_ * child->position)
+                : 1.0f;
+    child->length = parent.length * lengths_[code] * share;
+    return child->length >= least_length_;
   }
   const std::uint32_t limited = std::min(
       code, LargestChildLength(CodeOf(parent.chromosome, Gene::kLength)));

@@ -61,8 +61,8 @@ class GrowthRule {
                    std::span<const std::uint32_t> members, bool will_grow,
                    ChildPlan* plan) const;
   std::size_t CountOf(std::uint32_t chromosome) const;
-  // Length and length code of a child at a position; false when its length is
-  // 0.
+  // Length and length code of a child at a position; false when it is too short
+  // to grow.
   bool LimitLength(const Branch& parent, PlannedChild* child) const;
   void Turn(const Branch& parent, const BranchDraws& draws, std::size_t member,
             PlannedChild* child) const;
@@ -78,6 +78,8 @@ class GrowthRule {
   std::array<float, kPositionCodeMax + 1> positions_;
   SineCosine plain_deviation_;
   float crown_taper_;
+  float lateral_share_;
+  float least_length_;
   // Half the width of the azimuth's chance part, 2^32 to a turn.
   std::int64_t azimuth_spread_;
 };

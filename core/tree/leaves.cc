@@ -60,8 +60,10 @@ class LeafPlacer {
     // Y(1) of the paper: in [-1, 1], close to normal.
     const float chance =
         2.0f * static_cast<float>(sum) / static_cast<float>(kDrawSumMax) - 1.0f;
-    return tip_length * static_cast<float>(spec_.size_share) *
-           (1.0f + static_cast<float>(spec_.size_variation) * chance);
+    const float mean = spec_.size > 0
+                           ? static_cast<float>(spec_.size)
+                           : tip_length * static_cast<float>(spec_.size_share);
+    return mean * (1.0f + static_cast<float>(spec_.size_variation) * chance);
   }
 
   LeafBlock& leaves_;
@@ -87,8 +89,10 @@ absl::Status PlaceLeaves(const TreeSpec& spec, const SegmentBlock& block,
   for (std::size_t i = 0; i < block.rows(); ++i) {
     const int generation = generations.At(i);
     const std::uint8_t flags = block.flags[i];
-    const bool ends = generation == spec.depth || (flags & kTerminalFlag) != 0;
-    if (!ends || (flags & kContinuedFlag) != 0) continue;
+    const bool bears = generation > spec.depth - spec.leaves->generations ||
+                       (flags & kTerminalFlag) != 0;
+    const bool is_last_piece = (flags & kContinuedFlag) == 0;
+    if (!bears || !(is_last_piece || spec.leaves->every_piece)) continue;
     if (stop.stop_requested()) {
       return absl::CancelledError("placing of leaves stopped");
     }

@@ -1,8 +1,9 @@
 // Leaves: instances at the tips of a tree, for a leaf mesh or a flower to be
 // put there.
 //
-// Tips are the branches of the last generation and those that end. A tip has
-// leaves along its length, from base to end, turned about it by the golden
+// Tips are the branches of the last generations and those that end; of one that
+// bends its last piece, or every piece. A tip has leaves along its length, from
+// base to end, turned about it by the golden
 // angle (in 2-D to the two sides in turn); their sizes vary by chance, as a
 // function of (seed, row, leaf). Pure function of spec and rows, safe from any
 // thread; no function of the C library.

@@ -32,8 +32,10 @@ Float3 Pieces::Point(const Place& place) const {
 void ShapeBranch(const Branch& branch, const BendingSpec& bending,
                  Pieces* pieces) {
   const auto count = static_cast<float>(bending.pieces);
-  const auto gravity = static_cast<float>(bending.gravity);
-  const auto light = static_cast<float>(bending.light);
+  const float supple =
+      1.0f - static_cast<float>(bending.stiffness) * std::sqrt(branch.pipes);
+  const float gravity = supple * static_cast<float>(bending.gravity);
+  const float light = supple * static_cast<float>(bending.light);
   const float length = branch.length / count;
   pieces->count = static_cast<std::size_t>(bending.pieces);
   pieces->points[0] = branch.start;

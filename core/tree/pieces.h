@@ -3,7 +3,8 @@
 //
 // Gravity bends most at the base, where the weight bears; light most at the
 // tip, which is youngest. Both act on the level part of the direction, so that
-// an upright branch stays upright. Pure functions in float32; the same bits
+// an upright branch stays upright; a thick branch may be stiffer than a thin
+// one. Pure functions in float32; the same bits
 // everywhere.
 #ifndef TERRANE_CORE_TREE_PIECES_H_
 #define TERRANE_CORE_TREE_PIECES_H_

@@ -71,6 +71,14 @@ struct GeneticSpec {
   // 1): 0 leaves lengths alone, 0.9 makes a cone.
   double crown_taper = 0;
 
+  // RELATIVE: laterals of a monopodial branch are shorter by this factor, (0,
+  // 1]: little, and the axis rules the tree, as in conifers.
+  double lateral_share = 1;
+
+  // RELATIVE: a child shorter than this, in the tree's unit, is not grown, [0,
+  // 10^6]. So a long axis can go on while its twigs have ended.
+  double least_length = 0;
+
   // A monopodial branch goes on straight at its tip with a leader, beside its
   // laterals. (The paper's monopodial branch is its own axis and ends.)
   bool leader = false;
@@ -101,15 +109,24 @@ struct BendingSpec {
   int pieces = 1;      // of a branch, [1, 16]
   double gravity = 0;  // bends the level downwards, [0, 2]
   double light = 0;    // bends upwards, [0, 2]
+  // How much less a thick branch bends, [0, 1]: both are multiplied by 1 minus
+  // this times its radius^(Delta / 2) as a share of the trunk's.
+  double stiffness = 0;
 };
 
-// Leaves as instances at the tips: branches of the last generation and branches
-// that end (core/tree/leaves.h).
+// Leaves as instances at the tips: branches of the last generations and
+// branches that end (core/tree/leaves.h).
 struct LeafSpec {
   int count = 3;                // of a tip, [1, 64]
   double size_share = 0.5;      // of the tip's length, (0, 10]
   double angle_deg = 50;        // from the tip's direction, [0, 180]
   double size_variation = 0.2;  // half the range of sizes, as a share, [0, 1)
+  // Instead of size_share, in the tree's unit, the same for all tips; 0: by
+  // size_share. [0, 10^6].
+  double size = 0;
+  int generations = 1;  // that have leaves, the last ones, [1, 33]
+  // On every piece of a branch, `count` each, not on its last piece alone.
+  bool every_piece = false;
 };
 
 struct TreeSpec {

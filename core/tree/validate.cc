@@ -12,6 +12,7 @@ namespace {
 constexpr Range kShares{0, 1};
 constexpr Range kOpenShares{0, 1, true, true};
 constexpr Range kSizes{1e-3, 1e6};
+constexpr Range kSizesOrNone{0, 1e6};
 constexpr Range kHalfTurn{0, 180};
 constexpr Range kBends{0, 2};
 // Chromosome numbers are u32, counts of rows are parents' indices.
@@ -38,6 +39,23 @@ void ValidateEnds(const Path& genetic, const char* min_name, double min,
   }
 }
 
+// What shapes lengths with RELATIVE and must be left alone with ABSOLUTE.
+void ValidateRelative(const Path& path, const TreeSpec& tree,
+                      FieldChecks* checks) {
+  const auto check = [&](const char* name, double value, const Range& range,
+                         double neutral) {
+    const bool good = checks->Number(path.Field(name), value, range);
+    if (good && value != neutral && tree.length_mode == LengthMode::kAbsolute) {
+      checks->Violate(path.Field(name), "must be " + NumberText(neutral) +
+                                            " with length_mode ABSOLUTE, got " +
+                                            NumberText(value));
+    }
+  };
+  check("crown_taper", tree.genetic.crown_taper, {0, 1, false, true}, 0);
+  check("lateral_share", tree.genetic.lateral_share, {0, 1, true, false}, 1);
+  check("least_length", tree.genetic.least_length, kSizesOrNone, 0);
+}
+
 void ValidateGenetic(const Path& path, const TreeSpec& tree,
                      FieldChecks* checks) {
   const GeneticSpec& spec = tree.genetic;
@@ -52,14 +70,7 @@ void ValidateGenetic(const Path& path, const TreeSpec& tree,
                spec.angle_max_deg, {0, 180, true, true}, checks);
   ValidateEnds(path, "ratio_min", spec.ratio_min, "ratio_max", spec.ratio_max,
                kOpenShares, checks);
-  const bool taper_good = checks->Number(path.Field("crown_taper"),
-                                         spec.crown_taper, {0, 1, false, true});
-  if (taper_good && spec.crown_taper > 0 &&
-      tree.length_mode == LengthMode::kAbsolute) {
-    checks->Violate(path.Field("crown_taper"),
-                    "must be 0 with length_mode ABSOLUTE, got " +
-                        NumberText(spec.crown_taper));
-  }
+  ValidateRelative(path, tree, checks);
   checks->Number(path.Field("azimuth_spread_deg"), spec.azimuth_spread_deg,
                  kHalfTurn);
 }
@@ -77,6 +88,7 @@ void ValidateBending(const Path& path, const BendingSpec& spec,
   checks->Integer(path.Field("pieces"), spec.pieces, 1, kMaxPieces);
   checks->Number(path.Field("gravity"), spec.gravity, kBends);
   checks->Number(path.Field("light"), spec.light, kBends);
+  checks->Number(path.Field("stiffness"), spec.stiffness, {0, 1});
 }
 
 void ValidateLeaves(const Path& path, const LeafSpec& spec,
@@ -84,9 +96,12 @@ void ValidateLeaves(const Path& path, const LeafSpec& spec,
   checks->Integer(path.Field("count"), spec.count, 1, 64);
   checks->Number(path.Field("size_share"), spec.size_share,
                  {0, 10, true, false});
+  checks->Number(path.Field("size"), spec.size, kSizesOrNone);
   checks->Number(path.Field("angle_deg"), spec.angle_deg, kHalfTurn);
   checks->Number(path.Field("size_variation"), spec.size_variation,
                  {0, 1, false, true});
+  checks->Integer(path.Field("generations"), spec.generations, 1,
+                  kMaxTreeDepth + 1);
 }
 
 // What one form cannot have.

@@ -1,15 +1,18 @@
 #include "server/actor/actor.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/simd_target.h"
 #include "core/base/violations.h"
+#include "core/raytrace/ray_tracer.h"
 #include "core/surface/surface.h"
 #include "core/surface/validate_surface.h"
 #include "core/terrain/spec_checks.h"
 #include "core/terrain/spot_heights.h"
+#include "core/tree/tree_spec.h"
 #include "server/actor/cost_meter.h"
 #include "server/actor/error_reason.h"
 #include "server/actor/presets.h"
@@ -55,7 +58,10 @@ class TerrainActor : public Actor {
         spot_tables_(kSpotTables * SpotTableBytes(limits.recipe.max_spots)),
         terrains_(limits.prepared_bytes),
         meter_(std::make_shared<CostMeter>()),
-        surfaces_(limits) {}
+        surfaces_(limits),
+        trees_(limits),
+        flowers_(limits),
+        renders_(this, limits) {}
 
   absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
       const v1::StreamTilesRequest& request, std::stop_token stop) override;
@@ -71,18 +77,10 @@ class TerrainActor : public Actor {
   absl::StatusOr<v1::GetPresetResponse> GetPreset(
       const v1::GetPresetRequest& request) override;
   v1::GetServerInfoResponse GetServerInfo() override;
-  absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
-      const v1::StreamSurfaceRequest& request) override {
-    return surfaces_.Open(request);
-  }
-  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
-      const v1::EstimateSurfaceRequest& request) override {
-    return surfaces_.Estimate(request);
-  }
-  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
-      const v1::GetSurfacePresetRequest& request) override {
-    return surfaces_.GetPreset(request);
-  }
+  const SurfaceMaker& surfaces() const override { return surfaces_; }
+  const TreeMaker& trees() const override { return trees_; }
+  const FlowerMaker& flowers() const override { return flowers_; }
+  const RenderMaker& renders() const override { return renders_; }
   std::unique_ptr<RasterUpload> BeginRasterUpload() override {
     return MakeRasterUpload(limits_, &rasters_);
   }
@@ -119,6 +117,9 @@ class TerrainActor : public Actor {
   TerrainCache terrains_;
   const std::shared_ptr<CostMeter> meter_;
   const SurfaceMaker surfaces_;
+  const TreeMaker trees_;
+  const FlowerMaker flowers_;
+  const RenderMaker renders_;
 };
 
 // The spec to plan with, or null when it has violations.
@@ -378,6 +379,17 @@ v1::ServerLimits WriteLimits(const Limits& limits) {
   message.set_prepared_bytes(limits.prepared_bytes);
   message.set_max_surface_side(core::kMaxGridSide);
   message.set_max_weight_rules(core::kMaxWeightRules);
+  message.set_max_tree_segments(limits.tree.max_segments);
+  message.set_max_tree_bytes(limits.tree.max_bytes);
+  message.set_max_render_pixels(limits.max_render_pixels);
+  message.set_max_render_passes(limits.max_render_passes);
+  message.set_max_render_triangles(limits.max_render_triangles);
+  message.set_render_bytes(limits.render_bytes);
+  message.set_max_render_side(core::kMaxPictureSide);
+  message.set_max_forest_trees(limits.max_forest_trees);
+  message.set_max_forest_segments(limits.max_forest_segments);
+  message.set_max_flower_prototype_bytes(limits.flower.max_prototype_bytes);
+  message.set_max_flower_instances(limits.flower.max_instances);
   return message;
 }
 
@@ -400,9 +412,16 @@ v1::GetServerInfoResponse TerrainActor::GetServerInfo() {
   info.set_workers(workers_);
   *info.mutable_limits() = WriteLimits(limits_);
   info.set_surface_revision(core::kSurfaceRevision);
+  info.set_tree_revision(core::kTreeRevision);
+  info.set_flower_revision(core::kFlowerRevision);
   AddSummaries(Presets(), "terrain", &info);
-  // After all others, by name as well.
   AddSummaries(SurfacePresets(), "surface", &info);
+  AddSummaries(TreePresets(), "tree", &info);
+  AddSummaries(FlowerPresets(), "flower", &info);
+  std::sort(info.mutable_presets()->begin(), info.mutable_presets()->end(),
+            [](const v1::PresetSummary& a, const v1::PresetSummary& b) {
+              return a.name() < b.name();
+            });
   return info;
 }
 

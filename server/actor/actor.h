@@ -19,12 +19,14 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "core/terrain/terrain.h"
+#include "server/actor/flower_maker.h"
 #include "server/actor/limits.h"
+#include "server/actor/render_maker.h"
 #include "server/actor/surface_job.h"
+#include "server/actor/tree_maker.h"
 #include "terrane/v1/info.pb.h"
 #include "terrane/v1/raster.pb.h"
 #include "terrane/v1/spot_table.pb.h"
-#include "terrane/v1/surface.pb.h"
 #include "terrane/v1/terrain.pb.h"
 
 namespace terrane::server {
@@ -84,12 +86,11 @@ class Actor {
       const v1::GetPresetRequest& request) = 0;
   virtual v1::GetServerInfoResponse GetServerInfo() = 0;
 
-  virtual absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
-      const v1::StreamSurfaceRequest& request) = 0;
-  virtual absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
-      const v1::EstimateSurfaceRequest& request) = 0;
-  virtual absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
-      const v1::GetSurfacePresetRequest& request) = 0;
+  // The other generators; they live as long as the actor.
+  virtual const SurfaceMaker& surfaces() const = 0;
+  virtual const TreeMaker& trees() const = 0;
+  virtual const FlowerMaker& flowers() const = 0;
+  virtual const RenderMaker& renders() const = 0;
 
   virtual std::unique_ptr<RasterUpload> BeginRasterUpload() = 0;
   virtual absl::StatusOr<v1::GetRasterResponse> GetRaster(

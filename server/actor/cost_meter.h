@@ -1,6 +1,6 @@
-// CostMeter: what a generated lattice point costs on this machine, as a running
-// average of what was measured. Threads: any; a lost update costs one sample of
-// an average. Not part of any result's bytes.
+// CostMeter: what a generated point, a lattice's or a row of a tree, costs on
+// this machine, as a running average of what was measured. Threads: any; a lost
+// update costs one sample of an average. Not part of any result's bytes.
 #ifndef TERRANE_SERVER_ACTOR_COST_METER_H_
 #define TERRANE_SERVER_ACTOR_COST_METER_H_
 
@@ -12,6 +12,10 @@ namespace terrane::server {
 
 class CostMeter {
  public:
+  // `first_ns` holds until something was measured; the default is a lattice
+  // point's on a slow machine.
+  explicit CostMeter(double first_ns = 5) : ns_per_point_(first_ns) {}
+
   double ns_per_point() const {
     return ns_per_point_.load(std::memory_order_relaxed);
   }
@@ -27,8 +31,7 @@ class CostMeter {
 
  private:
   static constexpr double kWeight = 1.0 / 16;
-  // Until something was measured: a slow machine's.
-  std::atomic<double> ns_per_point_ = 5.0;
+  std::atomic<double> ns_per_point_;
 };
 
 }  // namespace terrane::server

@@ -5,8 +5,10 @@
 
 #include <cstdint>
 
+#include "core/flower/validate_flower.h"
 #include "core/grid/lattice_window.h"
 #include "core/terrain/validate.h"
+#include "core/tree/validate.h"
 
 namespace terrane::server {
 
@@ -22,6 +24,15 @@ struct Limits {
   std::int64_t raster_store_bytes = std::int64_t{1} << 30;
   int max_concurrent_streams = 64;
   std::int64_t prepared_bytes = std::int64_t{2} << 30;
+  core::TreeLimits tree;
+  std::int64_t max_forest_trees = 1'000'000;
+  std::int64_t max_forest_segments = 1'000'000'000;
+  core::FlowerLimits flower;
+  std::int64_t max_render_pixels = std::int64_t{1} << 23;
+  int max_render_passes = 4096;
+  std::int64_t max_render_triangles = 4'000'000;
+  // Of the scenes and pictures of all streams together.
+  std::int64_t render_bytes = std::int64_t{2} << 30;
 };
 
 }  // namespace terrane::server

@@ -3,6 +3,7 @@
 #include <google/protobuf/stubs/logging.h>
 #include <google/protobuf/util/json_util.h>
 
+#include <optional>
 #include <string_view>
 
 #include "server/actor/embedded_presets.h"
@@ -11,14 +12,29 @@
 namespace terrane::server {
 namespace {
 
+// Folders of presets that are no terrains.
 constexpr std::string_view kSurfaceFolder = "surface/";
+constexpr std::string_view kTreeFolder = "tree/";
+constexpr std::string_view kFlowerFolder = "flower/";
 
+bool IsTerrain(std::string_view name) {
+  for (const std::string_view folder :
+       {kSurfaceFolder, kTreeFolder, kFlowerFolder}) {
+    if (name.starts_with(folder)) return false;
+  }
+  return true;
+}
+
+// Those in `folder`, or the terrains without one.
 template <typename Preset>
-std::map<std::string, Preset> ParsePresets(bool surfaces) {
+std::map<std::string, Preset> ParsePresets(
+    std::optional<std::string_view> folder) {
   std::map<std::string, Preset> presets;
   for (const EmbeddedPreset& embedded : EmbeddedPresets()) {
     const std::string_view name = embedded.name;
-    if (name.starts_with(kSurfaceFolder) != surfaces) continue;
+    const bool wanted =
+        folder.has_value() ? name.starts_with(*folder) : IsTerrain(name);
+    if (!wanted) continue;
     Preset preset;
     const auto parsed =
         google::protobuf::util::JsonStringToMessage(embedded.json, &preset);
@@ -44,14 +60,27 @@ absl::StatusOr<const Preset*> Find(const std::map<std::string, Preset>& presets,
 const std::map<std::string, v1::TerrainPreset>& Presets() {
   static const auto* const presets =
       new std::map<std::string, v1::TerrainPreset>(
-          ParsePresets<v1::TerrainPreset>(false));
+          ParsePresets<v1::TerrainPreset>(std::nullopt));
   return *presets;
 }
 
 const std::map<std::string, v1::SurfacePreset>& SurfacePresets() {
   static const auto* const presets =
       new std::map<std::string, v1::SurfacePreset>(
-          ParsePresets<v1::SurfacePreset>(true));
+          ParsePresets<v1::SurfacePreset>(kSurfaceFolder));
+  return *presets;
+}
+
+const std::map<std::string, v1::TreePreset>& TreePresets() {
+  static const auto* const presets = new std::map<std::string, v1::TreePreset>(
+      ParsePresets<v1::TreePreset>(kTreeFolder));
+  return *presets;
+}
+
+const std::map<std::string, v1::FlowerPreset>& FlowerPresets() {
+  static const auto* const presets =
+      new std::map<std::string, v1::FlowerPreset>(
+          ParsePresets<v1::FlowerPreset>(kFlowerFolder));
   return *presets;
 }
 
@@ -62,6 +91,15 @@ absl::StatusOr<const v1::TerrainPreset*> FindPreset(const std::string& name) {
 absl::StatusOr<const v1::SurfacePreset*> FindSurfacePreset(
     const std::string& name) {
   return Find(SurfacePresets(), name);
+}
+
+absl::StatusOr<const v1::TreePreset*> FindTreePreset(const std::string& name) {
+  return Find(TreePresets(), name);
+}
+
+absl::StatusOr<const v1::FlowerPreset*> FindFlowerPreset(
+    const std::string& name) {
+  return Find(FlowerPresets(), name);
 }
 
 }  // namespace terrane::server

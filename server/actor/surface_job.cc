@@ -1,7 +1,5 @@
 #include "server/actor/surface_job.h"
 
-#include <xxh_x86dispatch.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include "core/surface/surface.h"
 #include "server/actor/height_tile.h"
 #include "server/actor/presets.h"
+#include "server/convert/column_bytes.h"
 #include "server/convert/content_hash.h"
 #include "server/convert/enum_table.h"
 #include "server/convert/surface_convert.h"
@@ -169,24 +168,14 @@ class SurfaceJobImpl : public SurfaceJob {
     tile->set_tile_x(index % plan.columns);
     tile->set_tile_y(index / plan.columns);
     WriteWindow(request.window, tile->mutable_window());
-    tile->set_checksum(ChecksumOf(*tile));
+    tile->set_checksum(
+        ColumnChecksum({&tile->positions(), &tile->normals(), &tile->uvs()}));
     std::int64_t left_out = 0;
     for (std::size_t k = 0; k < positions.size(); k += 3) {
       left_out += std::isnan(positions[k]) ? 1 : 0;
     }
     tile->set_left_out_samples(left_out);
     return absl::OkStatus();
-  }
-
-  static std::uint64_t ChecksumOf(const v1::MeshTile& tile) {
-    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(
-        XXH3_createState(), &XXH3_freeState);
-    XXH3_64bits_reset(state.get());
-    for (const std::string* column :
-         {&tile.positions(), &tile.normals(), &tile.uvs()}) {
-      XXH3_64bits_update(state.get(), column->data(), column->size());
-    }
-    return XXH3_64bits_digest(state.get());
   }
 
   absl::Status MakeHeights(std::int64_t index,

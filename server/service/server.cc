@@ -27,6 +27,9 @@ Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
              std::make_shared<BufferPool>(kBufferPoolBytes)},
       terrain_service_(parts_),
       surface_service_(parts_),
+      tree_service_(parts_),
+      flower_service_(parts_),
+      render_service_(parts_),
       raster_service_(parts_),
       spot_table_service_(parts_),
       info_service_(parts_) {}
@@ -43,6 +46,9 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
                            &server->port_);
   builder.RegisterService(&server->terrain_service_);
   builder.RegisterService(&server->surface_service_);
+  builder.RegisterService(&server->tree_service_);
+  builder.RegisterService(&server->flower_service_);
+  builder.RegisterService(&server->render_service_);
   builder.RegisterService(&server->raster_service_);
   builder.RegisterService(&server->spot_table_service_);
   builder.RegisterService(&server->info_service_);
@@ -71,6 +77,9 @@ void Server::SetServing(bool serving) {
   grpc::HealthCheckServiceInterface* health = server_->GetHealthCheckService();
   for (const char* name : {"", v1::TerrainService::service_full_name(),
                            v1::SurfaceService::service_full_name(),
+                           v1::TreeService::service_full_name(),
+                           v1::FlowerService::service_full_name(),
+                           v1::RenderService::service_full_name(),
                            v1::RasterService::service_full_name(),
                            v1::SpotTableService::service_full_name(),
                            v1::InfoService::service_full_name()}) {

@@ -16,11 +16,14 @@
 #include "absl/status/statusor.h"
 #include "server/actor/actor.h"
 #include "server/service/call_context.h"
+#include "server/service/flower_service.h"
 #include "server/service/info_service.h"
 #include "server/service/raster_service.h"
+#include "server/service/render_service.h"
 #include "server/service/spot_table_service.h"
 #include "server/service/surface_service.h"
 #include "server/service/terrain_service.h"
+#include "server/service/tree_service.h"
 
 namespace terrane::server {
 
@@ -60,6 +63,9 @@ class Server {
   ServiceParts parts_;
   TerrainServiceImpl terrain_service_;
   SurfaceServiceImpl surface_service_;
+  TreeServiceImpl tree_service_;
+  FlowerServiceImpl flower_service_;
+  RenderServiceImpl render_service_;
   RasterServiceImpl raster_service_;
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;

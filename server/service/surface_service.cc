@@ -18,7 +18,7 @@ grpc::ServerUnaryReactor* SurfaceServiceImpl::EstimateSurface(
     v1::EstimateSurfaceResponse* response) {
   return UnaryCall::Start(parts_, "EstimateSurface", context,
                           Answer(response, [this, request](std::stop_token) {
-                            return parts_.actor->EstimateSurface(*request);
+                            return parts_.actor->surfaces().Estimate(*request);
                           }));
 }
 
@@ -28,7 +28,7 @@ grpc::ServerUnaryReactor* SurfaceServiceImpl::GetSurfacePreset(
     v1::GetSurfacePresetResponse* response) {
   return UnaryCall::Start(parts_, "GetSurfacePreset", context,
                           Answer(response, [this, request](std::stop_token) {
-                            return parts_.actor->GetSurfacePreset(*request);
+                            return parts_.actor->surfaces().GetPreset(*request);
                           }));
 }
 

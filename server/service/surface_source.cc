@@ -35,7 +35,7 @@ class SurfaceSource : public StreamSource {
       return absl::InvalidArgumentError(
           "the request is not a StreamSurfaceRequest");
     }
-    auto job = parts_.actor->OpenSurface(request);
+    auto job = parts_.actor->surfaces().Open(request);
     if (!job.ok()) return job.status();
     job_ = *std::move(job);
     next_tile_ = job_->first();

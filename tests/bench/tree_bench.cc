@@ -123,6 +123,35 @@ void Vertices(benchmark::State& state, TreeSpec spec, const TubeSpec& tubes,
   meter.Report(state);
 }
 
+// Rows and their tubes together, as a program that wants a tree asks for them.
+// Counts rows; vertices_per_second counts those of the tubes.
+void GrownAndMeshed(benchmark::State& state, const TreeSpec& spec) {
+  const auto tree = Make(state, spec);
+  const auto mesher = TreeMesher::Create({});
+  if (!mesher.ok()) state.SkipWithError("no mesher");
+  SegmentBlock block;
+  Mesh mesh;
+  std::int64_t rows = 0;
+  std::int64_t vertices = 0;
+  for (auto _ : state) {
+    TreeGenerator generator(tree);
+    while (!generator.Done()) {
+      absl::Status status = generator.Next({}, &block);
+      rows += static_cast<std::int64_t>(block.rows());
+      for (std::size_t next = 0; status.ok() && next < block.rows();) {
+        status =
+            mesher->Next(block, {}, TreeMesher::kBlockVertices, &next, &mesh);
+        benchmark::DoNotOptimize(mesh.positions.data());
+        vertices += static_cast<std::int64_t>(mesh.positions.size());
+      }
+      if (!status.ok()) state.SkipWithError(status.ToString().c_str());
+    }
+  }
+  state.SetItemsProcessed(rows);
+  state.counters["vertices_per_second"] = benchmark::Counter(
+      static_cast<double>(vertices), benchmark::Counter::kIsRate);
+}
+
 // --- The list ---------------------------------------------------------------
 
 TreeSpec Relative(int dimensions) {
@@ -171,6 +200,9 @@ void RegisterAll() {
   benchmark::RegisterBenchmark(
       "first_block/relative_3d",
       [](benchmark::State& state) { FirstBlock(state, Relative(3)); });
+  benchmark::RegisterBenchmark(
+      "grown_and_meshed/relative_3d",
+      [](benchmark::State& state) { GrownAndMeshed(state, Relative(3)); });
   RegisterVertices("sides_12", {}, of_byte);
   RegisterVertices("sides_3", {.sides = 3}, of_byte);
   RegisterVertices("sides_12_open",

@@ -166,6 +166,64 @@ TEST(TreeSvg, HasALineForEveryRowInAGroupForEachGeneration) {
   }
 }
 
+// The lines of a text as words.
+std::vector<std::vector<std::string>> Words(const std::string& text,
+                                            char separator) {
+  std::vector<std::vector<std::string>> lines;
+  std::istringstream input(text);
+  for (std::string line; std::getline(input, line);) {
+    std::istringstream words(line);
+    lines.emplace_back();
+    for (std::string word; std::getline(words, word, separator);) {
+      lines.back().push_back(word);
+    }
+  }
+  return lines;
+}
+
+TEST(TreeForests, SwcIdsGoOnFromTreeToTree) {
+  EXPECT_EQ(SwcForest::Header(), "# id type x y z radius parent\n");
+  SwcForest forest;
+  std::size_t before = 0;
+  for (const TreeSpec& spec : Specs()) {
+    const SegmentBlock tree = Grow(spec);
+    auto expected = Words(EncodeSwc(tree), ' ');
+    expected.erase(expected.begin());  // the header
+    for (std::vector<std::string>& node : expected) {
+      node[0] = std::to_string(std::stoul(node[0]) + before);
+      if (node[6] != "-1") {
+        node[6] = std::to_string(std::stoul(node[6]) + before);
+      }
+    }
+    ASSERT_EQ(Words(forest.Add(tree), ' '), expected);
+    before += expected.size();
+  }
+}
+
+TEST(TreeForests, CsvLinesGoOnFromTreeToTree) {
+  constexpr std::size_t kParent = 8;
+  constexpr std::size_t kExtension = 9;
+  EXPECT_TRUE(TreeCsvForest::Header().ends_with(",chromosome,tree\n"));
+  TreeCsvForest forest;
+  std::size_t before = 0;
+  std::size_t number = 0;
+  for (const TreeSpec& spec : Specs()) {
+    const SegmentBlock tree = Grow(spec);
+    auto expected = Words(EncodeTreeCsv(tree), ',');
+    expected.erase(expected.begin());  // the header
+    for (std::vector<std::string>& row : expected) {
+      for (const std::size_t column : {kParent, kExtension}) {
+        if (row[column] == "0") continue;
+        row[column] = std::to_string(std::stoul(row[column]) + before);
+      }
+      row.push_back(std::to_string(number));
+    }
+    ASSERT_EQ(Words(forest.Add(tree), ','), expected);
+    before += expected.size();
+    ++number;
+  }
+}
+
 TEST(TreeCodecs, TakeATreeWithoutRows) {
   EXPECT_EQ(EncodeSwc({}), "# id type x y z radius parent\n");
   EXPECT_TRUE(EncodeTreeCsv({}).starts_with("radius,length,"));

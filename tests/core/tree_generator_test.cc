@@ -247,6 +247,38 @@ TEST(GeneticTree, CrownTaperShortensLateralsTowardsTheTip) {
   }
 }
 
+TEST(GeneticTree, LateralShareShortensLateralsButNoLeader) {
+  TreeSpec spec = Relative(1, 2);
+  spec.genetic.leader = true;
+  const SegmentBlock even = Grow(spec);
+  spec.genetic.lateral_share = 0.5;
+  const SegmentBlock shared = Grow(spec);
+  ASSERT_EQ(shared.rows(), even.rows());
+  for (std::size_t row = 1; row < even.rows(); ++row) {
+    const std::size_t parent = even.parent[row];
+    const double of_parent = LengthOf(shared, parent) / LengthOf(even, parent);
+    const bool halved = (even.flags[row] & kLeaderFlag) == 0 &&
+                        (even.flags[parent] & kMonopodialFlag) != 0;
+    EXPECT_NEAR(LengthOf(shared, row) / LengthOf(even, row),
+                of_parent * (halved ? 0.5 : 1), 1e-3);
+  }
+}
+
+TEST(GeneticTree, NothingShorterThanTheLeastLengthGrows) {
+  TreeSpec spec = Relative(1, 2);
+  spec.depth = 8;
+  const SegmentBlock whole = Grow(spec);
+  spec.genetic.least_length = 30;
+  const SegmentBlock cut = Grow(spec);
+  EXPECT_LT(cut.rows(), whole.rows());
+  bool ends_early = false;
+  for (std::size_t row = 0; row < cut.rows(); ++row) {
+    EXPECT_GE(LengthOf(cut, row), 29.99);
+    ends_early = ends_early || (cut.flags[row] & kTerminalFlag) != 0;
+  }
+  EXPECT_TRUE(ends_early);
+}
+
 // r^Delta of a branch is that of its axis at the tip and of its children.
 void ExpectConservedPipes(const TreeSpec& spec) {
   const SegmentBlock tree = Grow(spec);
@@ -320,6 +352,27 @@ TEST(Bending, GravityLowersAndLightRaisesTheTips) {
   const double straight = mean_tip({6, 0, 0});
   EXPECT_LT(mean_tip({6, 1, 0}), straight - 5);
   EXPECT_GT(mean_tip({6, 0, 1}), straight + 5);
+}
+
+TEST(Bending, WhatIsThickBendsLess) {
+  TreeSpec spec = Relative(7, 3);
+  // How far the first and last piece of a branch part, in degrees.
+  const auto bend = [](const SegmentBlock& tree, std::size_t first) {
+    return AngleBetween(tree, first, first + 5);
+  };
+  for (spec.seed = 0; spec.seed < 10; ++spec.seed) {
+    spec.bending = {6, 1, 0};
+    const SegmentBlock supple = Grow(spec);
+    spec.bending.stiffness = 1;
+    const SegmentBlock stiff = Grow(spec);
+    // The trunk's children, which set out alike in both trees.
+    const auto end = static_cast<std::size_t>(stiff.marks[1].end_row);
+    for (std::size_t first = 6; first < end; first += 6) {
+      const double radius = static_cast<double>(stiff.radius_start[first] /
+                                                stiff.radius_start[0]);
+      EXPECT_NEAR(bend(stiff, first) / bend(supple, first), 1 - radius, 0.15);
+    }
+  }
 }
 
 TEST(CantorSet, StrictHasThirdsAtBothEnds) {

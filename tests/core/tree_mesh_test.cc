@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/mesh/float3.h"
+#include "core/mesh/leaf_mesh.h"
 #include "core/tree/leaves.h"
 #include "gtest/gtest.h"
 #include "tests/core/whole_tree.h"
@@ -220,6 +221,75 @@ TEST(Leaves, SitOnTheTipsWithTheirSizes) {
     shares.insert(share);
   }
   EXPECT_GT(shares.size(), leaves.count() / 2);
+}
+
+TEST(Leaves, SitOnSeveralGenerationsAndOnEveryPiece) {
+  TreeSpec spec;
+  spec.length_mode = LengthMode::kRelative;
+  spec.dimensions = 3;
+  spec.depth = 5;
+  spec.bending.pieces = 3;
+  spec.leaves = LeafSpec{.count = 2,
+                         .size_variation = 0,
+                         .size = 7,
+                         .generations = 2,
+                         .every_piece = true};
+  const SegmentBlock tree = Grow(spec);
+  const auto first = static_cast<std::size_t>(tree.marks[3].end_row);
+  LeafBlock leaves;
+  ASSERT_TRUE(PlaceLeaves(spec, tree, {}, &leaves).ok());
+  EXPECT_EQ(leaves.count(), 2 * (tree.rows() - first));
+  EXPECT_EQ(leaves.row.front(), first);
+  for (const float size : leaves.size) EXPECT_EQ(size, 7);
+  spec.leaves->every_piece = false;
+  ASSERT_TRUE(PlaceLeaves(spec, tree, {}, &leaves).ok());
+  EXPECT_EQ(leaves.count(), 2 * (tree.rows() - first) / 3);
+}
+
+TEST(LeafMesh, LiesAlongXWithItsFaceUp) {
+  const Mesh leaf = MakeLeafMesh({.width = 0.4});
+  ASSERT_EQ(leaf.indices.size(), 8u * 3);
+  float widest = 0;
+  for (std::size_t k = 0; k < leaf.positions.size(); ++k) {
+    const Float3& p = leaf.positions[k];
+    EXPECT_GE(p.x, 0);
+    EXPECT_LE(p.x, 1);
+    EXPECT_GE(p.z, 0);
+    EXPECT_NEAR(static_cast<double>(Length(leaf.normals[k])), 1, 1e-6);
+    EXPECT_GT(leaf.normals[k].z, 0.9f);
+    widest = std::max(widest, 2 * p.y);
+  }
+  EXPECT_NEAR(static_cast<double>(widest), 0.4 * 0.9, 1e-6);
+  for (std::size_t k = 0; k < leaf.indices.size(); k += 3) {
+    const Float3 a = leaf.positions[leaf.indices[k]];
+    const Float3 b = leaf.positions[leaf.indices[k + 1]];
+    const Float3 c = leaf.positions[leaf.indices[k + 2]];
+    EXPECT_GT(Cross(b - a, c - a).z, 0);
+  }
+  const Mesh spray = MakeLeafMesh({.blades = 5, .spread_deg = 180});
+  EXPECT_EQ(spray.positions.size(), 5 * leaf.positions.size());
+  EXPECT_NEAR(static_cast<double>(spray.positions[7].y), -1, 1e-6);
+  EXPECT_NEAR(static_cast<double>(spray.positions[4 * 8 + 7].y), 1, 1e-6);
+}
+
+TEST(LeafMesh, IsTurnedToItsDirectionAndFace) {
+  const Float3 directions[] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                               {0, -1, 0}, {0, 0, 1},  {0.6f, 0, -0.8f}};
+  for (const Float3& direction : directions) {
+    for (const Float3& other : directions) {
+      const Float3 across = Cross(direction, other);
+      if (Length(across) < 0.1f) continue;
+      const Float3 normal = Normalized(across);
+      const Quaternion q = LeafRotation(direction, normal);
+      const Float3 axis = {q.x, q.y, q.z};
+      const auto turned = [&](const Float3& v) {
+        const Float3 once = 2.0f * Cross(axis, v);
+        return v + q.w * once + Cross(axis, once);
+      };
+      EXPECT_LT(Length(turned({1, 0, 0}) - direction), 1e-6f);
+      EXPECT_LT(Length(turned({0, 0, 1}) - normal), 1e-6f);
+    }
+  }
 }
 
 TEST(Leaves, StopWhenAsked) {

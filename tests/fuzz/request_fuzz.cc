@@ -1,14 +1,16 @@
-// Parse, validate and price a StreamTiles and a StreamSurface request, and make
-// the terrain ready when that is cheap, whatever the bytes: it never crashes,
-// and an error is always one that the API documents. The same bytes are read as
-// both.
+// Parse, validate and price a request of each generator, and make the terrain
+// ready or grow the tree when that is cheap, whatever the bytes: it never
+// crashes, and an error is always one that the API documents. The same bytes
+// are read as a request of each.
 //
 // Built as a libFuzzer target (TERRANE_FUZZERS, Clang; the bytes are a
 // serialized request or, when they start with '{', protobuf JSON) and, in every
 // build, as a test that replays tests/fuzz/corpus: request holds seeds of
-// StreamTiles, surface of StreamSurface.
+// StreamTiles, surface of StreamSurface, tree of StreamTreeMesh, forest of
+// StreamForest, flower of StreamFlower, render of StreamRender.
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -74,7 +76,7 @@ bool TerrainKeepsContract(const std::string& bytes) {
 bool SurfaceKeepsContract(const std::string& bytes) {
   v1::EstimateSurfaceRequest request;
   if (!ParseRequest(bytes, request.mutable_request())) return true;
-  const auto estimate = TheActor().EstimateSurface(request);
+  const auto estimate = TheActor().surfaces().Estimate(request);
   if (!estimate.ok()) return IsDocumented(estimate.status());
   return estimate->tiles() >= 0 && estimate->samples() >= 0 &&
          estimate->samples() <= (std::int64_t{1} << 36) &&
@@ -82,9 +84,88 @@ bool SurfaceKeepsContract(const std::string& bytes) {
          estimate->cpu_seconds() >= 0;
 }
 
+// Reads messages until the run ends, at most `most`.
+template <typename Message>
+bool RunKeepsContract(OpenedRun<Message> run, int most) {
+  if (!run.ok()) return IsDocumented(run.status());
+  Message message;
+  for (int k = 0; k < most && !(*run)->Done(); ++k) {
+    const absl::Status status = (*run)->Next({}, &message);
+    if (!status.ok()) return IsDocumented(status);
+    if ((*run)->last_items() < 0) return false;
+  }
+  return true;
+}
+
+bool TreeKeepsContract(const std::string& bytes) {
+  constexpr int kFewMessages = 3;
+  v1::StreamTreeMeshRequest mesh;
+  if (ParseRequest(bytes, &mesh)) {
+    v1::EstimateTreeRequest request;
+    *request.mutable_tree() = mesh.tree();
+    const auto estimate = TheActor().trees().Estimate(request);
+    if (!estimate.ok()) return IsDocumented(estimate.status());
+    if (estimate->segments_most() < 1 || estimate->memory_bytes_most() < 0 ||
+        !(estimate->cpu_seconds_most() >= 0)) {
+      return false;
+    }
+    // Blocks that are left out are made all the same.
+    mesh.set_first_block(std::min<std::int64_t>(mesh.first_block(), 2));
+    v1::StreamTreeLeavesRequest leaves;
+    *leaves.mutable_tree() = mesh.tree();
+    if (!RunKeepsContract(TheActor().trees().OpenMesh(mesh), kFewMessages) ||
+        !RunKeepsContract(TheActor().trees().OpenLeaves(leaves),
+                          kFewMessages)) {
+      return false;
+    }
+  }
+  v1::StreamForestRequest forest;
+  return !ParseRequest(bytes, &forest) ||
+         RunKeepsContract(TheActor().trees().OpenForest(forest), kFewMessages);
+}
+
+bool FlowerKeepsContract(const std::string& bytes) {
+  constexpr std::int64_t kFewBytes = 4 << 20;
+  v1::StreamFlowerRequest request;
+  if (!ParseRequest(bytes, &request)) return true;
+  v1::EstimateFlowerRequest price;
+  *price.mutable_flower() = request.flower();
+  const auto estimate = TheActor().flowers().Estimate(price);
+  if (!estimate.ok()) return IsDocumented(estimate.status());
+  if (estimate->prototypes() < 1 || estimate->instances() < 1 ||
+      !(estimate->cpu_seconds() >= 0)) {
+    return false;
+  }
+  return estimate->prototype_bytes() > kFewBytes ||
+         RunKeepsContract(TheActor().flowers().Open(request), 5);
+}
+
+bool RenderKeepsContract(const std::string& bytes) {
+  constexpr int kFewMessages = 4;
+  constexpr std::int64_t kFewTriangles = 20'000;
+  constexpr std::int64_t kFewPaths = 20'000;
+  v1::EstimateRenderRequest request;
+  if (!ParseRequest(bytes, request.mutable_request())) return true;
+  const auto estimate = TheActor().renders().Estimate(request);
+  if (!estimate.ok()) return IsDocumented(estimate.status());
+  if (estimate->bands() < 0 || estimate->data_bytes() < 0 ||
+      estimate->triangles_most() < 1 || estimate->paths() < 1 ||
+      !(estimate->cpu_seconds() >= 0) || estimate->memory_bytes_most() < 1) {
+    return false;
+  }
+  // A terrain may take long to prepare.
+  return request.request().has_terrain() ||
+         estimate->triangles_most() > kFewTriangles ||
+         estimate->paths() > kFewPaths ||
+         RunKeepsContract(TheActor().renders().Open(request.request(), {}),
+                          kFewMessages);
+}
+
 // False when an answer breaks the contract.
 bool RequestKeepsContract(const std::string& bytes) {
-  return TerrainKeepsContract(bytes) && SurfaceKeepsContract(bytes);
+  return TerrainKeepsContract(bytes) && SurfaceKeepsContract(bytes) &&
+         TreeKeepsContract(bytes) && FlowerKeepsContract(bytes) &&
+         RenderKeepsContract(bytes);
 }
 
 }  // namespace terrane::server
@@ -126,7 +207,8 @@ std::string BytesOf(const std::filesystem::path& seed) {
 }
 
 TEST(RequestFuzzTest, CorpusKeepsTheContract) {
-  for (const char* folder : {"request", "surface"}) {
+  for (const char* folder :
+       {"request", "surface", "tree", "forest", "flower", "render"}) {
     const std::vector<std::filesystem::path> seeds = Seeds(folder);
     for (const std::filesystem::path& seed : seeds) {
       EXPECT_TRUE(RequestKeepsContract(BytesOf(seed))) << seed.filename();
@@ -148,6 +230,10 @@ void ExpectJsonSeedsAre(const std::string& folder) {
 TEST(RequestFuzzTest, JsonSeedsAreRequests) {
   ExpectJsonSeedsAre<v1::StreamTilesRequest>("request");
   ExpectJsonSeedsAre<v1::StreamSurfaceRequest>("surface");
+  ExpectJsonSeedsAre<v1::StreamTreeMeshRequest>("tree");
+  ExpectJsonSeedsAre<v1::StreamForestRequest>("forest");
+  ExpectJsonSeedsAre<v1::StreamFlowerRequest>("flower");
+  ExpectJsonSeedsAre<v1::StreamRenderRequest>("render");
 }
 
 }  // namespace

@@ -100,6 +100,17 @@ void AddShapes(TreeList* list) {
   list->Add("leaves_flat", 2, 6, [](TreeSpec* s) {
     s->leaves = LeafSpec{2, 0.8, 35, 0.5};
   });
+  list->Add("ruled_by_axis", 3, 7, [](TreeSpec* s) {
+    s->genetic.leader = true;
+    s->genetic.lateral_share = 0.45;
+    s->genetic.least_length = 8;
+    s->bending = {3, 0.8, 0.2, 0.9};
+  });
+  list->Add("leaves_all_over", 3, 6, [](TreeSpec* s) {
+    s->bending.pieces = 2;
+    s->leaves =
+        LeafSpec{.count = 2, .size = 9, .generations = 3, .every_piece = true};
+  });
 }
 
 }  // namespace

@@ -18,9 +18,11 @@ SERVER, STUBS = sys.argv[1:3]
 sys.path.insert(0, STUBS)
 
 from terrane.v1 import common_pb2, info_pb2, info_pb2_grpc, raster_pb2, raster_pb2_grpc  # noqa: E402
+from terrane.v1 import render_pb2, render_pb2_grpc  # noqa: E402
 from terrane.v1 import spot_table_pb2, spot_table_pb2_grpc  # noqa: E402
 from terrane.v1 import surface_pb2, surface_pb2_grpc  # noqa: E402
 from terrane.v1 import terrain_pb2, terrain_pb2_grpc, terrain_recipe_pb2  # noqa: E402
+from terrane.v1 import tree_pb2, tree_pb2_grpc, tree_recipe_pb2  # noqa: E402
 
 FIELD = descriptor_pb2.FieldDescriptorProto
 
@@ -220,6 +222,70 @@ class PythonClientTest(unittest.TestCase):
         grown = resident_bytes(self.server) - settled
         stream.cancel()
         self.assertLess(grown, 32 << 20)
+
+    def large_tree(self):
+        recipe = tree_recipe_pb2.TreeRecipe(dimensions=3, seed=3, depth=18, max_segments=1_000_000,
+                                            length_mode=tree_recipe_pb2.LENGTH_MODE_RELATIVE)
+        return tree_pb2.TreeChoice(recipe=recipe)
+
+    def test_every_prefix_of_a_tree_parses_as_a_tree(self):
+        stub = tree_pb2_grpc.TreeServiceStub(self.channel)
+        stream = stub.StreamTree(tree_pb2.StreamTreeRequest(tree=self.large_tree()), timeout=60)
+        self.assertTrue(next(stream).HasField("header"))
+        starts, ends, parents = (numpy.empty((0, 3), "<f4"),) * 2 + (numpy.empty(0, "<u4"),)
+        for message in stream:
+            rows = message.segments
+            self.assertEqual(rows.first_row, len(parents))
+            starts = numpy.concatenate([starts, numpy.frombuffer(rows.starts, "<f4").reshape(-1, 3)])
+            ends = numpy.concatenate([ends, numpy.frombuffer(rows.ends, "<f4").reshape(-1, 3)])
+            parents = numpy.concatenate([parents, numpy.frombuffer(rows.parents, "<u4")])
+            attach = numpy.frombuffer(rows.attaches, "<f4")
+            new = numpy.arange(max(rows.first_row, 1), len(parents))
+            self.assertTrue((parents[new] < new).all())
+            # A row begins where its parent's says: what came so far is connected.
+            share = attach[new - rows.first_row][:, None]
+            on_parent = starts[parents[new]] * (1 - share) + ends[parents[new]] * share
+            numpy.testing.assert_allclose(starts[new], on_parent, atol=1e-3)
+            if len(parents) > 100_000:
+                break
+        stream.cancel()
+        self.assertEqual(parents[0], 0xFFFFFFFF)
+
+    def test_a_picture_gets_better_with_every_stage(self):
+        stub = render_pb2_grpc.RenderServiceStub(self.channel)
+        subject = render_pb2.SurfaceSubject(
+            surface=surface_pb2.SurfaceChoice(preset="surface/fig07"), columns=65, rows=65)
+        request = render_pb2.StreamRenderRequest(
+            surface=subject, ground=True, width=60, height=40, passes=64,
+            encoding=render_pb2.PIXEL_ENCODING_LINEAR_FLOAT32_LE)
+        pictures = {}
+        for message in stub.StreamRender(request, timeout=120):
+            if message.HasField("band"):
+                pixels = numpy.frombuffer(message.band.pixels, "<f4").reshape(40, 60, 3)
+                pictures[message.band.passes] = pixels
+        self.assertEqual(list(pictures), [1, 2, 4, 8, 16, 32, 64])
+        noise = [numpy.sqrt(((pictures[n] - pictures[64]) ** 2).mean()) for n in (1, 4, 16)]
+        self.assertGreater(noise[0], 1.5 * noise[1])
+        self.assertGreater(noise[1], 1.5 * noise[2])
+        self.assertTrue((pictures[64] >= 0).all())
+
+    def test_memory_stays_flat_over_large_trees(self):
+        # A tree of a million rows is 49 MB; the server keeps the branches that wait
+        # to grow, which the estimate bounds, and gives their memory back to the next
+        # tree: the second to fifth must not cost anything on top.
+        stub = tree_pb2_grpc.TreeServiceStub(self.channel)
+        estimate = stub.EstimateTree(tree_pb2.EstimateTreeRequest(tree=self.large_tree()), timeout=60)
+        before = resident_bytes(self.server)
+        peaks = []
+        for _ in range(5):
+            rows, peak = 0, 0
+            for message in stub.StreamTree(tree_pb2.StreamTreeRequest(tree=self.large_tree()), timeout=120):
+                rows += message.segments.rows
+                peak = max(peak, resident_bytes(self.server))
+            self.assertEqual(rows, 1_000_000)
+            peaks.append(peak)
+        self.assertLess(peaks[0] - before, estimate.memory_bytes_most + (64 << 20))
+        self.assertLess(max(peaks[1:]) - peaks[0], 32 << 20)
 
     def test_server_says_what_it_allows(self):
         info = info_pb2_grpc.InfoServiceStub(self.channel).GetServerInfo(info_pb2.GetServerInfoRequest(), timeout=60)

@@ -34,7 +34,8 @@ TreeSpec RandomRecipe(int index) {
   if (spec.form == TreeForm::kGenetic && chance(2)) spec.dimensions = 3;
   if (chance(2)) spec.length_mode = LengthMode::kRelative;
   if (spec.form != TreeForm::kCantor && chance(4)) {
-    spec.bending = {static_cast<int>(random() % 4) + 2, share(), share()};
+    spec.bending = {static_cast<int>(random() % 4) + 2, share(), share(),
+                    share()};
   }
   if (chance(3)) spec.pipe_exponent = 1.8 + share();
   spec.cantor.statistical = chance(2);
@@ -49,6 +50,11 @@ TreeSpec RandomRecipe(int index) {
   genetic.mutation_rate = share() / 4;
   genetic.twigs_end = chance(3);
   genetic.leader = chance(4);
+  if (spec.length_mode == LengthMode::kRelative) {
+    if (chance(3)) genetic.crown_taper = 0.9 * share();
+    if (chance(3)) genetic.lateral_share = 0.2 + 0.8 * share();
+    if (chance(3)) genetic.least_length = 60 * share();
+  }
   return spec;
 }
 

@@ -126,18 +126,10 @@ class FakeActor : public Actor {
     return absl::InternalError("cannot read /etc/secret");
   }
   v1::GetServerInfoResponse GetServerInfo() override { return {}; }
-  absl::StatusOr<std::shared_ptr<const SurfaceJob>> OpenSurface(
-      const v1::StreamSurfaceRequest&) override {
-    return absl::UnimplementedError("no surfaces here");
-  }
-  absl::StatusOr<v1::EstimateSurfaceResponse> EstimateSurface(
-      const v1::EstimateSurfaceRequest&) override {
-    return v1::EstimateSurfaceResponse();
-  }
-  absl::StatusOr<v1::GetSurfacePresetResponse> GetSurfacePreset(
-      const v1::GetSurfacePresetRequest&) override {
-    return v1::GetSurfacePresetResponse();
-  }
+  const SurfaceMaker& surfaces() const override { return surfaces_; }
+  const TreeMaker& trees() const override { return trees_; }
+  const FlowerMaker& flowers() const override { return flowers_; }
+  const RenderMaker& renders() const override { return renders_; }
   std::unique_ptr<RasterUpload> BeginRasterUpload() override { return nullptr; }
   absl::StatusOr<v1::GetRasterResponse> GetRaster(
       const v1::GetRasterRequest&) override {
@@ -153,6 +145,10 @@ class FakeActor : public Actor {
 
  private:
   FakeTiles tiles_;
+  const SurfaceMaker surfaces_{Limits()};
+  const TreeMaker trees_{Limits()};
+  const FlowerMaker flowers_{Limits()};
+  const RenderMaker renders_{this, Limits()};
 };
 
 // Waits up to ten seconds for a condition that other threads bring about.

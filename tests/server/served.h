@@ -13,11 +13,14 @@
 #include <string>
 
 #include "server/service/server.h"
+#include "terrane/v1/flower.grpc.pb.h"
 #include "terrane/v1/info.grpc.pb.h"
 #include "terrane/v1/raster.grpc.pb.h"
+#include "terrane/v1/render.grpc.pb.h"
 #include "terrane/v1/spot_table.grpc.pb.h"
 #include "terrane/v1/surface.grpc.pb.h"
 #include "terrane/v1/terrain.grpc.pb.h"
+#include "terrane/v1/tree.grpc.pb.h"
 
 namespace terrane::server {
 
@@ -37,6 +40,9 @@ class Served {
         grpc::InsecureChannelCredentials(), ClientArguments());
     terrain = v1::TerrainService::NewStub(channel_);
     surface = v1::SurfaceService::NewStub(channel_);
+    tree = v1::TreeService::NewStub(channel_);
+    flower = v1::FlowerService::NewStub(channel_);
+    render = v1::RenderService::NewStub(channel_);
     raster = v1::RasterService::NewStub(channel_);
     spot_table = v1::SpotTableService::NewStub(channel_);
     info = v1::InfoService::NewStub(channel_);
@@ -52,6 +58,9 @@ class Served {
 
   std::unique_ptr<v1::TerrainService::Stub> terrain;
   std::unique_ptr<v1::SurfaceService::Stub> surface;
+  std::unique_ptr<v1::TreeService::Stub> tree;
+  std::unique_ptr<v1::FlowerService::Stub> flower;
+  std::unique_ptr<v1::RenderService::Stub> render;
   std::unique_ptr<v1::RasterService::Stub> raster;
   std::unique_ptr<v1::SpotTableService::Stub> spot_table;
   std::unique_ptr<v1::InfoService::Stub> info;

@@ -19,15 +19,16 @@ using ::testing::HasSubstr;
 class SurfaceActorTest : public ::testing::Test {
  protected:
   std::shared_ptr<const SurfaceJob> Open(const std::string& json) {
-    auto job = actor_->OpenSurface(FromJson<v1::StreamSurfaceRequest>(json));
+    auto job =
+        actor_->surfaces().Open(FromJson<v1::StreamSurfaceRequest>(json));
     EXPECT_TRUE(job.ok()) << job.status();
     return *std::move(job);
   }
   std::string Error(const std::string& json) {
-    return std::string(
-        actor_->OpenSurface(FromJson<v1::StreamSurfaceRequest>(json))
-            .status()
-            .message());
+    return std::string(actor_->surfaces()
+                           .Open(FromJson<v1::StreamSurfaceRequest>(json))
+                           .status()
+                           .message());
   }
   static v1::StreamSurfaceResponse Tile(const SurfaceJob& job,
                                         std::int64_t index) {
@@ -86,7 +87,7 @@ TEST_F(SurfaceActorTest, AskingWithTheResolvedRecipeGivesTheSame) {
   *request.mutable_surface()->mutable_recipe() = preset->header().recipe();
   request.set_columns(33);
   request.set_rows(33);
-  const auto again = *actor_->OpenSurface(request);
+  const auto again = *actor_->surfaces().Open(request);
   EXPECT_EQ(again->header().recipe_hash(), preset->header().recipe_hash());
   EXPECT_EQ(Tile(*again, 0).mesh_tile().checksum(),
             Tile(*preset, 0).mesh_tile().checksum());
@@ -138,7 +139,7 @@ TEST_F(SurfaceActorTest, EstimatesCountTheTilesThatAreLeft) {
   *request.mutable_request() = FromJson<v1::StreamSurfaceRequest>(R"({
     "surface": {"preset": "surface/fig08"}, "columns": 300, "rows": 200,
     "tileSize": 100, "firstTile": 1, "uvs": true})");
-  const auto estimate = actor_->EstimateSurface(request);
+  const auto estimate = actor_->surfaces().Estimate(request);
   ASSERT_TRUE(estimate.ok()) << estimate.status();
   EXPECT_EQ(estimate->tiles(), 5);
   EXPECT_EQ(estimate->samples(), 50'000);
