@@ -73,11 +73,12 @@ int PrintEstimate(const FlowerCommand& command, const v1::FlowerChoice& choice,
   std::cout << fmt::format(
       "{} prototypes of {} vertices and {} triangles, {} bytes\n"
       "{} instances, {} bytes\n"
+      "{} control values\n"
       "about {:.3g} s of one core, {} bytes of memory\n",
       estimate->prototypes(), estimate->vertices(), estimate->triangles(),
       estimate->prototype_bytes(), estimate->instances(),
-      estimate->instance_bytes(), estimate->cpu_seconds(),
-      estimate->memory_bytes());
+      estimate->instance_bytes(), estimate->control_values(),
+      estimate->cpu_seconds(), estimate->memory_bytes());
   return kExitOk;
 }
 

@@ -1,7 +1,9 @@
 #include "core/base/det_math.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -71,15 +73,48 @@ double SinOfQuarters(double r, std::int64_t quarters) {
   return (quarters & 2) != 0 ? -sum : sum;
 }
 
+// (-1)^k / n! for n = first, first + 2, ...: Taylor's coefficients.
+constexpr std::array<double, 11> TaylorCoefficients(int first) {
+  std::array<double, 11> coefficients{};
+  double factor = 1;
+  int n = first;
+  for (double& coefficient : coefficients) {
+    coefficient = factor;
+    factor /= -(n + 1.0) * (n + 2.0);
+    n += 2;
+  }
+  return coefficients;
+}
+constexpr std::array<double, 11> kSineTerms = TaylorCoefficients(1);
+constexpr std::array<double, 11> kCosineTerms = TaylorCoefficients(0);
+
+double Polynomial(const std::array<double, 11>& terms, double x) {
+  double sum = terms.back();
+  for (std::size_t k = terms.size() - 1; k > 0; --k) {
+    sum = sum * x + terms[k - 1];
+  }
+  return sum;
+}
+
+// x less whole quarter turns, and how many.
+struct Reduced {
+  double rest;
+  std::int64_t quarters;
+};
+Reduced Reduce(double x) {
+  const double quarters = std::nearbyint(x * kTwoOverPi);
+  return {((x - quarters * kHalfPiHigh) - quarters * kHalfPiMiddle) -
+              quarters * kHalfPiLow,
+          static_cast<std::int64_t>(quarters)};
+}
+
 // Sine of x plus `more` quarter turns.
 double SinPlusQuarters(double x, std::int64_t more) {
   if (!(std::fabs(x) <= kLargestAngle)) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  const double quarters = std::nearbyint(x * kTwoOverPi);
-  const double r = ((x - quarters * kHalfPiHigh) - quarters * kHalfPiMiddle) -
-                   quarters * kHalfPiLow;
-  return SinOfQuarters(r, static_cast<std::int64_t>(quarters) + more);
+  const Reduced reduced = Reduce(x);
+  return SinOfQuarters(reduced.rest, reduced.quarters + more);
 }
 
 }  // namespace
@@ -131,5 +166,26 @@ double DetLog(double x) { return DetLog2(x) * kLn2; }
 double DetSin(double x) { return SinPlusQuarters(x, 0); }
 
 double DetCos(double x) { return SinPlusQuarters(x, 1); }
+
+SineCosine64 DetSinCos(double x) {
+  if (!(std::fabs(x) <= kLargestAngle)) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    return {kNan, kNan};
+  }
+  const Reduced reduced = Reduce(x);
+  const double square = reduced.rest * reduced.rest;
+  const double sine = reduced.rest * Polynomial(kSineTerms, square);
+  const double cosine = Polynomial(kCosineTerms, square);
+  switch (reduced.quarters & 3) {
+    case 0:
+      return {sine, cosine};
+    case 1:
+      return {cosine, -sine};
+    case 2:
+      return {-sine, -cosine};
+    default:
+      return {-cosine, sine};
+  }
+}
 
 }  // namespace terrane::core

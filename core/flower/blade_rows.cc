@@ -97,12 +97,13 @@ void BladeRows::MoveTo(double y) {
     // Gauss's rule of 2 points.
     const double reach = 0.28867513459481287 * step;
     const double middle = midline_.y + 0.5 * step;
-    const double low = Theta(middle - reach);
-    const double high = Theta(middle + reach);
-    midline_.out += 0.5 * step * (DetCos(low) + DetCos(high));
-    midline_.up += 0.5 * step * (DetSin(low) + DetSin(high));
-    midline_.sine = DetSin(Theta(y));
-    midline_.cosine = DetCos(Theta(y));
+    const SineCosine64 low = DetSinCos(Theta(middle - reach));
+    const SineCosine64 high = DetSinCos(Theta(middle + reach));
+    const SineCosine64 end = DetSinCos(Theta(y));
+    midline_.out += 0.5 * step * (low.cosine + high.cosine);
+    midline_.up += 0.5 * step * (low.sine + high.sine);
+    midline_.sine = end.sine;
+    midline_.cosine = end.cosine;
   }
   midline_.curvature = base_curl_ + curl_change_ * y;
   midline_.y = y;

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/flower/blade_mesh.h"
 #include "core/flower/blade_painter.h"
 #include "core/flower/instance_block.h"
 #include "core/flower/placement.h"
@@ -39,7 +40,11 @@ void AddMeshes(const MeshSize& size, bool has_colors, std::int64_t count,
       Plus(estimate->prototype_bytes, Times(bytes, count));
 }
 
-void AddBlades(const BladeSpec& blade, FlowerEstimate* estimate) {
+void AddBlades(PetalMethod method, const BladeSpec& blade,
+               FlowerEstimate* estimate) {
+  for (const Sketch& sketch : blade.sketches) {
+    estimate->control_values += ControlValues(method, sketch);
+  }
   AddMeshes(BladeSize(blade), HasColors(blade.colors), BladeMeshes(blade),
             estimate);
 }
@@ -57,11 +62,11 @@ FlowerEstimate EstimateFlower(const FlowerSpec& spec) {
     of_plant = 1;
   }
   for (const LeafGroup& group : spec.leaves) {
-    AddBlades(group.blade, &estimate);
+    AddBlades(spec.method, group.blade, &estimate);
     of_plant = Plus(of_plant, Times(group.count, RowsOfLeaf(spec, group)));
   }
   for (const PetalGroup& group : spec.petals) {
-    AddBlades(group.blade, &estimate);
+    AddBlades(spec.method, group.blade, &estimate);
     of_plant = Plus(of_plant, group.count);
   }
   for (const SolidGroup& group : spec.solids) {

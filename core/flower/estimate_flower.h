@@ -21,6 +21,9 @@ struct FlowerEstimate {
   // Rows of the whole bed, and the bytes of their columns.
   std::int64_t instances = 0;
   std::int64_t instance_bytes = 0;
+  // Numbers that the sketches of petals and leaves need by the spec's method
+  // (ControlValues of core/flower/blade_mesh.h).
+  std::int64_t control_values = 0;
 };
 
 FlowerEstimate EstimateFlower(const FlowerSpec& spec);

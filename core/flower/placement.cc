@@ -34,8 +34,6 @@ constexpr double kStalkShare = 1.0 / 3;
 
 double Mix(double a, double b, double share) { return a + share * (b - a); }
 
-Vector Scaled(double x, double y, double z) { return {x, y, z}; }
-
 // A frame whose y leaves the axis at an azimuth, raised by an elevation.
 Turn Outwards(double azimuth, double elevation) {
   return AboutZ(azimuth - 90) * AboutX(elevation);
@@ -137,8 +135,8 @@ Vector Placement::BedPlace(std::uint32_t index, const Chance& chance) const {
   const double column = index - row * side;
   const double middle = 0.5 * (side - 1);
   const double reach = 0.5 * bed.jitter;
-  return bed.spacing_m * Scaled(column - middle + reach * chance.Signed(0),
-                                row - middle + reach * chance.Signed(1), 0);
+  return bed.spacing_m * Vector{column - middle + reach * chance.Signed(0),
+                                row - middle + reach * chance.Signed(1), 0};
 }
 
 StemLine::Place Placement::StemAt(const Plant& plant, double share) const {
@@ -146,8 +144,8 @@ StemLine::Place Placement::StemAt(const Plant& plant, double share) const {
   const StemLine::Place place = stems_[plant.stem].At(share);
   const Vector p = place.position;
   const Vector d = place.direction;
-  return {Scaled(p.x, p.y, plant.stretch * p.z),
-          UnitOf(Scaled(d.x, d.y, plant.stretch * d.z))};
+  return {{p.x, p.y, plant.stretch * p.z},
+          UnitOf({d.x, d.y, plant.stretch * d.z})};
 }
 
 FlowerInstance Placement::RowOf(const Plant& plant, std::int64_t row) const {
@@ -185,7 +183,7 @@ FlowerInstance Placement::RowOf(const Plant& plant, std::int64_t row) const {
 Placement::Local Placement::StemRow(const Plant& plant) const {
   Local local;
   local.prototype = table_.stems + static_cast<std::uint32_t>(plant.stem);
-  local.scale = Scaled(1, 1, plant.stretch);
+  local.scale = {1, 1, plant.stretch};
   return local;
 }
 
@@ -204,7 +202,7 @@ Placement::Local Placement::LeafRow(const Plant& plant, std::size_t index,
   const std::int64_t leaf = row / of_leaf;
   const bool has_stalk = of_leaf > group.leaflets;
   const std::int64_t part = row % of_leaf - (has_stalk ? 1 : 0);
-  // All parts of a leaf share the chance of its first row.
+  // All parts of a leaf share its chance.
   const Chance whole(
       plant.key,
       kWholePlant - 1 - leaf - 1024 * static_cast<std::int64_t>(index),
@@ -225,7 +223,7 @@ Placement::Local Placement::LeafRow(const Plant& plant, std::size_t index,
   if (part < 0) {
     const double radius = kStalkShare * StemRadius(*spec_.stem, share);
     local.prototype = table_.stalk;
-    local.scale = Scaled(radius, stalk, radius);
+    local.scale = {radius, stalk, radius};
     return local;
   }
   local.organ = FlowerOrgan::kLeaf;
@@ -239,7 +237,7 @@ Placement::Local Placement::LeafRow(const Plant& plant, std::size_t index,
   const double side = part % 2 == 1 ? 1 : -1;
   if (pair > 0) local.turn = turn * AboutZ(side * kLeafletAngle);
   const double own = pair == 0 ? size : kLeafletSize * size;
-  local.scale = Scaled(own, own, own);
+  local.scale = {own, own, own};
   return local;
 }
 
@@ -272,8 +270,8 @@ Placement::Local Placement::PetalRow(const Plant& plant, std::size_t index,
                        plant.head_turn.Of({seat.radius * at.cosine,
                                            seat.radius * at.sine, seat.height});
   local.turn = plant.head_turn * Outwards(azimuth, angle) * AboutY(swirl);
-  local.scale = size * Scaled(1 + kPetalWidth * chance.Varied(6), 1,
-                              1 + kPetalWidth * chance.Varied(7));
+  local.scale = size * Vector{1 + kPetalWidth * chance.Varied(6), 1,
+                              1 + kPetalWidth * chance.Varied(7)};
   return local;
 }
 
@@ -301,7 +299,7 @@ Placement::Local Placement::SolidRow(const Plant& plant, std::size_t index,
                        plant.head_turn.Of({seat.radius * at.cosine,
                                            seat.radius * at.sine, seat.height});
   local.turn = plant.head_turn * Outwards(seat.azimuth_deg, angle);
-  local.scale = Scaled(size, size, size);
+  local.scale = {size, size, size};
   return local;
 }
 

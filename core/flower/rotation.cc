@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "core/base/det_math.h"
-
 namespace terrane::core {
 namespace {
 
@@ -16,8 +14,7 @@ Vector UnitOf(Vector a) {
 }
 
 SineCosine64 SineCosineOf(double degrees) {
-  const double radians = (degrees - 360 * std::floor(degrees / 360)) * kRadians;
-  return {DetSin(radians), DetCos(radians)};
+  return DetSinCos((degrees - 360 * std::floor(degrees / 360)) * kRadians);
 }
 
 Vector Turn::Of(Vector a) const {

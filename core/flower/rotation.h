@@ -5,6 +5,7 @@
 #ifndef TERRANE_CORE_FLOWER_ROTATION_H_
 #define TERRANE_CORE_FLOWER_ROTATION_H_
 
+#include "core/base/det_math.h"
 #include "core/mesh/scene.h"
 
 namespace terrane::core {
@@ -29,10 +30,6 @@ constexpr Float3 ToFloat3(Vector a) {
           static_cast<float>(a.z)};
 }
 
-struct SineCosine64 {
-  double sine = 0;
-  double cosine = 1;
-};
 // Of any angle of moderate size.
 SineCosine64 SineCosineOf(double degrees);
 

@@ -198,6 +198,7 @@ absl::StatusOr<v1::EstimateFlowerResponse> FlowerMaker::Estimate(
   response.set_prototype_bytes(estimate.prototype_bytes);
   response.set_instances(estimate.instances);
   response.set_instance_bytes(estimate.instance_bytes);
+  response.set_control_values(estimate.control_values);
   response.set_cpu_seconds(
       static_cast<double>(estimate.vertices + estimate.instances) *
       meter_->ns_per_point() * 1e-9);

@@ -19,9 +19,12 @@ for preset in genetic oak spruce; do
 done
 "$2" tree --local --preset tree/acacia --depth 4 --instancing nodes --ends closed --out "${folder}/leaf_nodes.glb" >/dev/null
 "$2" tree --local --preset tree/poplar --depth 4 --forest --count 4 --out "${folder}/forest.glb" >/dev/null
-for preset in genetic oak spruce; do
-  "$2" tree --local --preset "tree/${preset}" --depth 5 --lod 0,1 --out "${folder}/${preset}.glb" >/dev/null
+for instancing in extension nodes; do
+  flower=("$2" flower --local --preset flower/rose --instancing "${instancing}")
+  "${flower[@]}" --out "${folder}/rose_${instancing}.glb" >/dev/null
+  "${flower[@]}" --out "${folder}/again.glb" >/dev/null
+  cmp "${folder}/rose_${instancing}.glb" "${folder}/again.glb"
+  "${flower[@]}" --plants 9 --out "${folder}/bed_${instancing}.glb" >/dev/null
 done
-"$2" tree --local --preset tree/acacia --depth 4 --instancing nodes --ends closed --out "${folder}/nodes_of_leaves.glb" >/dev/null
-"$2" tree --local --preset tree/poplar --depth 4 --forest --count 4 --out "${folder}/forest.glb" >/dev/null
+"$2" flower --local --preset flower/pansy --method ifs --out "${folder}/pansy_ifs.glb" >/dev/null
 NODE_PATH="${packages}/node_modules" node "${here}/validate_gltf.js" "${folder}"/*.glb

@@ -121,6 +121,18 @@ TEST(DetMathTest, SinAndCos) {
   }
   EXPECT_EQ(DetSin(0), 0);
   EXPECT_EQ(DetCos(0), 1);
+  for (const double range : {0.8, 7.0, 1e5}) {
+    ExpectSineWithin(
+        range, [](double x) { return DetSinCos(x).sine; },
+        [](double x) { return std::sin(x); });
+    ExpectSineWithin(
+        range, [](double x) { return DetSinCos(x).cosine; },
+        [](double x) { return std::cos(x); });
+  }
+  EXPECT_EQ(DetSinCos(0).sine, 0);
+  EXPECT_EQ(DetSinCos(0).cosine, 1);
+  EXPECT_TRUE(std::isnan(DetSinCos(-1.1e5).sine));
+  EXPECT_TRUE(std::isnan(DetSinCos(kNan).cosine));
   EXPECT_TRUE(std::isnan(DetSin(1.1e5)));
   EXPECT_TRUE(std::isnan(DetCos(kInfinity)));
   EXPECT_TRUE(std::isnan(DetSin(kNan)));

@@ -105,6 +105,16 @@ TEST(Flower, EstimateIsExact) {
   }
 }
 
+TEST(Flower, ControlValuesAreThoseOfItsMethod) {
+  // Two sketches of a petal, one of a sepal, one of a leaf with three points.
+  FlowerSpec rose = Rose();
+  EXPECT_EQ(EstimateFlower(rose).control_values, 3 * 7 + 9);
+  rose.method = PetalMethod::kIfs;
+  EXPECT_EQ(EstimateFlower(rose).control_values, 3 * 36 + 48);
+  rose.method = PetalMethod::kBezier;
+  EXPECT_EQ(EstimateFlower(rose).control_values, 4 * 48);
+}
+
 TEST(Flower, PrototypesAreGoodMeshes) {
   for (const std::string& name : FlowerPresetNames()) {
     const auto flower = MakeFlower(FlowerPreset(name));
