@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Draws every picture of the gallery and writes its pages around them:
-#   docs/make-gallery.sh [--section ground|trees] [TERRANE]
-# ground is docs/gallery.md (terrain and surfaces), trees docs/gallery-trees.md;
-# both without --section. TERRANE is the program to draw with,
+#   docs/make-gallery.sh [--section ground|trees|flowers] [TERRANE]
+# ground is docs/gallery.md (terrain and surfaces), trees docs/gallery-trees.md,
+# flowers docs/gallery-flowers.md; all without --section. TERRANE is the program to draw with,
 # build/release/bin/terrane by default. It generates in its own process (--local),
 # so no server is needed. Intermediate height files go to out/gallery. Run it again
 # after a preset or the renderer has changed, and look at what it drew.
@@ -73,6 +73,21 @@ tree() {
 *What to see.* $look"
 }
 
+# flower NAME LOOK [OPTION...]: a preset of a flower, ray traced.
+flower() {
+  local name=$1 look=$2 file=flower-${1#*/}
+  shift 2
+  local about title description
+  about=$("$terrane" presets "$name" --local)
+  title=$(sed -n '1s/^[^:]*: //p' <<<"$about")
+  description=$(sed -n 3p <<<"$about")
+  run render --local --preset "$name" --width 560 --height 560 "$@" --out "$pictures/$file.png"
+  say "### $title" ""
+  picture "$file" "$title" "$description
+
+*What to see.* $look"
+}
+
 # row FILE TEXT: pictures beside each other, FILE-0.png and on, as many as there are
 # commands since the last picture, with one caption.
 row() {
@@ -134,7 +149,7 @@ root of the tree with `build/release/bin` in the path.
 - [Other readings of D](#other-readings-of-d)
 - [Free-form surfaces](#free-form-surfaces)
 
-Trees have [a page of their own](gallery-trees.md). How it all works is in [terrain.md](terrain.md) and [surface.md](surface.md).
+[Trees](gallery-trees.md) and [flowers](gallery-flowers.md) have pages of their own. How it all works is in [terrain.md](terrain.md) and [surface.md](surface.md).
 
 ## A real elevation model, refined
 
@@ -333,5 +348,67 @@ done
 row tree-lod "Levels of detail 0 to 3 of the oak: fewer generations, fewer faces, fewer and larger leaves, the same silhouette."
 }
 
+draw_flowers() {
+page=docs/gallery-flowers.md
+forget_pictures
+cat >"$page" <<'TEXT'
+# Gallery: flowers
+
+Drawn by [make-gallery.sh](make-gallery.sh), as [the ground's](gallery.md): every picture stands
+above the commands that draw it again, to the last digits on any machine. All are ray traced by
+the paper's own shading ([rendering.md](rendering.md)).
+
+- [The paper's figures](#the-papers-figures)
+- [Ours](#ours)
+- [How light falls](#how-light-falls)
+- [Beds](#beds)
+
+How it works is in [flower.md](flower.md).
+
+## The paper's figures
+
+Wang, Zhang and Yang, Journal of Shenzhen University Science and Engineering 36(4), 2019. Its
+tables are lost; what it prints of numbers is kept, the rest is chosen here.
+
+TEXT
+flower flower/rose "An open rose: a spiral of upright petals in the middle, the outer ones curled back over the sepals." --tilt 38
+for stage in 0 0.33 0.67 1; do
+  run render --local --preset flower/rose --stage "$stage" --width 300 --height 400 --tilt 16 --out "$pictures/flower-rose-stage-${#commands[@]}.png"
+done
+row flower-rose-stage "Figure 11, a rose from bud to bloom: stages 0, 0.33, 0.67 and 1."
+flower flower/pansy "A face: dark blotches that run out in rays, a yellow eye, two darker petals behind." --tilt 10 --turn 0
+flower flower/water-lily "Petals that lie open around golden stamens, above their pads." --tilt 30
+flower flower/sunflower "Two families of spirals, 34 one way and 55 the other." --tilt 12 --turn 0
+for name in flat wavy curled; do
+  run render --local --preset "flower/leaf-$name" --width 300 --height 300 --tilt 50 --out "$pictures/flower-leaf-${#commands[@]}.png"
+done
+row flower-leaf "Figure 4, leaves of one outline: more Nd, Nsx and Nsy, more relief."
+for name in flat wavy ruffled; do
+  run render --local --preset "flower/petal-$name" --width 300 --height 300 --tilt 50 --out "$pictures/flower-petal-${#commands[@]}.png"
+done
+row flower-petal "Figure 5, petals: the halves mirror each other."
+for method in ifs bezier perlin; do
+  run render --local --preset flower/rose --method "$method" --width 320 --height 400 --tilt 30 --out "$pictures/flower-method-${#commands[@]}.png"
+done
+row flower-method "Figure 12, three methods: an iterated function system's flat ragged petals, Bezier patches without ruffles, and the paper's."
+
+say "## Ours" ""
+flower flower/daisy "A yellow dome in a ring of white." --tilt 35
+flower flower/tulip "A cup that is still closing at its rim." --tilt 15
+flower flower/lily "Six petals that roll back, stamens that reach out." --tilt 12
+flower flower/chrysanthemum "Petals rolled into quills, denser towards the middle." --tilt 40
+
+say "## How light falls" "" "Figure 8: the paper's model beside the empirical ones that it replaces." ""
+for shading in lambert blinn-phong literal conserving; do
+  run render --local --preset flower/rose --shading "$shading" --width 300 --height 300 --tilt 38 --out "$pictures/flower-shading-${#commands[@]}.png"
+done
+row flower-shading "Lambert, Blinn-Phong, the paper's model as printed, and the one that conserves energy."
+
+say "## Beds" "" "One set of prototypes, a row for each petal of each plant: no two plants are alike." ""
+run render --local --preset flower/daisy --plants 100 --width 700 --height 420 --tilt 24 --out "$pictures/flower-bed.png"
+picture flower-bed "A hundred daisies" "A hundred daisies on a grid that chance has moved."
+}
+
 if draws ground; then draw_ground; fi
 if draws trees; then draw_trees; fi
+if draws flowers; then draw_flowers; fi
