@@ -17,11 +17,6 @@ done
 for preset in genetic oak spruce; do
   "$2" tree --local --preset "tree/${preset}" --depth 5 --lod 0,1 --out "${folder}/${preset}.glb" >/dev/null
 done
-"$2" tree --local --preset tree/acacia --depth 4 --instancing nodes --ends closed --out "${folder}/leaf_nodes.glb" >/dev/null
-"$2" tree --local --preset tree/poplar --depth 4 --forest --count 4 --out "${folder}/forest.glb" >/dev/null
-for preset in genetic oak spruce; do
-  "$2" tree --local --preset "tree/${preset}" --depth 5 --lod 0,1 --out "${folder}/${preset}.glb" >/dev/null
-done
 "$2" tree --local --preset tree/acacia --depth 4 --instancing nodes --ends closed --out "${folder}/nodes_of_leaves.glb" >/dev/null
 "$2" tree --local --preset tree/poplar --depth 4 --forest --count 4 --out "${folder}/forest.glb" >/dev/null
 NODE_PATH="${packages}/node_modules" node "${here}/validate_gltf.js" "${folder}"/*.glb
