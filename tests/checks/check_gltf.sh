@@ -17,7 +17,7 @@ done
 for preset in genetic oak spruce; do
   "$2" tree --local --preset "tree/${preset}" --depth 5 --lod 0,1 --out "${folder}/${preset}.glb" >/dev/null
 done
-"$2" tree --local --preset tree/acacia --depth 4 --instancing nodes --ends closed --out "${folder}/leaf_nodes.glb" >/dev/null
+"$2" tree --local --preset tree/acacia --depth 4 --instancing nodes --ends closed --out "${folder}/nodes_of_leaves.glb" >/dev/null
 "$2" tree --local --preset tree/poplar --depth 4 --forest --count 4 --out "${folder}/forest.glb" >/dev/null
 for instancing in extension nodes; do
   flower=("$2" flower --local --preset flower/rose --instancing "${instancing}")
