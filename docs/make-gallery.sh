@@ -388,7 +388,7 @@ for name in flat wavy ruffled; do
 done
 row flower-petal "Figure 5, petals: the halves mirror each other."
 for method in ifs bezier perlin; do
-  run render --local --preset flower/rose --method "$method" --width 320 --height 400 --tilt 30 --out "$pictures/flower-method-${#commands[@]}.png"
+  run render --local --preset flower/rose --petal-method "$method" --width 320 --height 400 --tilt 30 --out "$pictures/flower-method-${#commands[@]}.png"
 done
 row flower-method "Figure 12, three methods: an iterated function system's flat ragged petals, Bezier patches without ruffles, and the paper's."
 

@@ -228,7 +228,7 @@ void AddFlowerOptions(CLI::App* app, FlowerOptions* flower) {
       ->excludes(preset)
       ->group("Flower");
   app->add_option("--seed", flower->seed, "Any 64-bit number")->group("Flower");
-  AddGrowthOptions(app, flower);
+  AddGrowthOptions(app, "--method", flower);
 }
 
 }  // namespace

@@ -15,14 +15,15 @@ const std::map<std::string, v1::PetalMethod> kMethods = {
 
 }  // namespace
 
-void AddGrowthOptions(CLI::App* app, FlowerOptions* flower) {
+void AddGrowthOptions(CLI::App* app, const char* method_name,
+                      FlowerOptions* flower) {
   app->add_option("--stage", flower->stage,
                   "Growth, 0 (a bud) to 1 (full bloom)")
       ->group("Flower");
   app->add_option("--plants", flower->plants,
                   "Plants of a bed, 1 to 1,000,000, no two alike")
       ->group("Flower");
-  app->add_option("--method", flower->method,
+  app->add_option(method_name, flower->method,
                   "Petals by perlin (the paper's), ifs or bezier (what it "
                   "compares with)")
       ->transform(OneOf(kMethods))

@@ -8,8 +8,9 @@
 
 namespace terrane::client {
 
-// Stage, plants and method.
-void AddGrowthOptions(CLI::App* app, FlowerOptions* flower);
+// Stage, plants and, as `method_name`, the method of petals.
+void AddGrowthOptions(CLI::App* app, const char* method_name,
+                      FlowerOptions* flower);
 
 }  // namespace terrane::client
 

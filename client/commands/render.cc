@@ -360,7 +360,7 @@ void AddRenderCommand(CLI::App* app, Action* action) {
   AddNetOptions(subcommand, &command->surface);
   AddSizeOption(subcommand, &command->size);
   AddTracedOptions(subcommand, &command->traced);
-  AddGrowthOptions(subcommand, &command->flower);
+  AddGrowthOptions(subcommand, "--petal-method", &command->flower);
   subcommand
       ->add_flag("--control-net", command->control_net,
                  "Draw the control polyhedron of a surface, too")
