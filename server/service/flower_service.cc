@@ -13,7 +13,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FlowerServiceImpl::StreamFlower(
   using Source = RunSource<v1::StreamFlowerRequest, v1::StreamFlowerResponse>;
   return TileStream::Start(
       parts_, "StreamFlower", context,
-      std::make_unique<Source>(*request, [this](const auto& asked) {
+      std::make_unique<Source>(*request, [this](const auto& asked, auto) {
         return parts_.actor->flowers().Open(asked);
       }));
 }
