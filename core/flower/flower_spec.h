@@ -130,8 +130,8 @@ struct BladeSpec {
   // Reliefs of a sketch, told apart by whole lattice offsets, [1, 16].
   int variants = 1;
   // The shape of a closed blade and of one that is quite open; between them it
-  // is blended, in so many steps ([1, 16]; 1: always `open`). Sketches *
-  // variants * steps meshes are made.
+  // is blended, in so many steps ([1, 16]; 1: always `open`) for equal shares
+  // of the opening. Sketches * variants * steps meshes are made.
   BladeShape closed;
   BladeShape open;
   int steps = 1;

@@ -191,7 +191,7 @@ BladeChoice Placement::Choose(const BladeSpec& blade, double openness,
                               const Chance& chance) const {
   return {chance.Choice(0, static_cast<int>(blade.sketches.size())),
           chance.Choice(1, blade.variants),
-          static_cast<int>(std::nearbyint(openness * (blade.steps - 1)))};
+          std::min(static_cast<int>(openness * blade.steps), blade.steps - 1)};
 }
 
 Placement::Local Placement::LeafRow(const Plant& plant, std::size_t index,
