@@ -81,7 +81,7 @@ flower() {
   about=$("$terrane" presets "$name" --local)
   title=$(sed -n '1s/^[^:]*: //p' <<<"$about")
   description=$(sed -n 3p <<<"$about")
-  run render --local --preset "$name" --width 560 --height 560 "$@" --out "$pictures/$file.png"
+  run render --local --preset "$name" --width 520 --height 520 --passes 32 "$@" --out "$pictures/$file.png"
   say "### $title" ""
   picture "$file" "$title" "$description
 
@@ -373,22 +373,22 @@ tables are lost; what it prints of numbers is kept, the rest is chosen here.
 TEXT
 flower flower/rose "An open rose: a spiral of upright petals in the middle, the outer ones curled back over the sepals." --tilt 38
 for stage in 0 0.33 0.67 1; do
-  run render --local --preset flower/rose --stage "$stage" --width 300 --height 400 --tilt 16 --out "$pictures/flower-rose-stage-${#commands[@]}.png"
+  run render --local --preset flower/rose --stage "$stage" --width 300 --height 400 --passes 32 --tilt 16 --out "$pictures/flower-rose-stage-${#commands[@]}.png"
 done
 row flower-rose-stage "Figure 11, a rose from bud to bloom: stages 0, 0.33, 0.67 and 1."
 flower flower/pansy "A face: dark blotches that run out in rays, a yellow eye, two darker petals behind." --tilt 10 --turn 0
 flower flower/water-lily "Petals that lie open around golden stamens, above their pads." --tilt 30
 flower flower/sunflower "Two families of spirals, 34 one way and 55 the other." --tilt 12 --turn 0
 for name in flat wavy curled; do
-  run render --local --preset "flower/leaf-$name" --width 300 --height 300 --tilt 50 --out "$pictures/flower-leaf-${#commands[@]}.png"
+  run render --local --preset "flower/leaf-$name" --width 300 --height 300 --passes 32 --tilt 50 --out "$pictures/flower-leaf-${#commands[@]}.png"
 done
 row flower-leaf "Figure 4, leaves of one outline: more Nd, Nsx and Nsy, more relief."
 for name in flat wavy ruffled; do
-  run render --local --preset "flower/petal-$name" --width 300 --height 300 --tilt 50 --out "$pictures/flower-petal-${#commands[@]}.png"
+  run render --local --preset "flower/petal-$name" --width 300 --height 300 --passes 32 --tilt 50 --out "$pictures/flower-petal-${#commands[@]}.png"
 done
 row flower-petal "Figure 5, petals: the halves mirror each other."
 for method in ifs bezier perlin; do
-  run render --local --preset flower/rose --petal-method "$method" --width 320 --height 400 --tilt 30 --out "$pictures/flower-method-${#commands[@]}.png"
+  run render --local --preset flower/rose --petal-method "$method" --width 320 --height 400 --passes 32 --tilt 30 --out "$pictures/flower-method-${#commands[@]}.png"
 done
 row flower-method "Figure 12, three methods: an iterated function system's flat ragged petals, Bezier patches without ruffles, and the paper's."
 
@@ -400,12 +400,12 @@ flower flower/chrysanthemum "Petals rolled into quills, denser towards the middl
 
 say "## How light falls" "" "Figure 8: the paper's model beside the empirical ones that it replaces." ""
 for shading in lambert blinn-phong literal conserving; do
-  run render --local --preset flower/rose --shading "$shading" --width 300 --height 300 --tilt 38 --out "$pictures/flower-shading-${#commands[@]}.png"
+  run render --local --preset flower/rose --shading "$shading" --width 300 --height 300 --passes 32 --tilt 38 --out "$pictures/flower-shading-${#commands[@]}.png"
 done
 row flower-shading "Lambert, Blinn-Phong, the paper's model as printed, and the one that conserves energy."
 
 say "## Beds" "" "One set of prototypes, a row for each petal of each plant: no two plants are alike." ""
-run render --local --preset flower/daisy --plants 100 --width 700 --height 420 --tilt 24 --out "$pictures/flower-bed.png"
+run render --local --preset flower/daisy --plants 100 --width 700 --height 420 --passes 32 --tilt 24 --out "$pictures/flower-bed.png"
 picture flower-bed "A hundred daisies" "A hundred daisies on a grid that chance has moved."
 }
 

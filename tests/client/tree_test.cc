@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <string>
 
 #include "client/forest.h"
@@ -12,6 +13,7 @@
 #include "client/tree_model.h"
 #include "client/tree_rows.h"
 #include "core/mesh/float3.h"
+#include "core/mesh/rotation.h"
 #include "tests/client/temporary_folder.h"
 
 namespace terrane::client {
@@ -187,6 +189,47 @@ TEST(SkeletonViewTest, LaysACantorSetsGenerationsBelowEachOther) {
   EXPECT_NEAR(
       static_cast<double>(tree->rows.end[1].x + tree->rows.radius_end[1]), 3,
       1e-5);
+}
+
+// A flower stands on its leaf's face, as large as the leaf is long: its +y
+// along the leaf's +x, its +z along the leaf's +z.
+TEST(FoliageTest, StandsAtEveryLeafAsTheLeafDoes) {
+  LocalBackend backend(1);
+  v1::FlowerChoice choice;
+  choice.set_preset("flower/leaf-flat");
+  const auto flower =
+      FlowerModel::Stream(choice, ProgressMode::kNone, &backend.flowers(), {});
+  ASSERT_TRUE(flower.ok()) << flower.status();
+  auto model = StreamTreeModel(SmallOak(), {}, &backend.trees(), {});
+  ASSERT_TRUE(model.ok()) << model.status();
+  auto look = TreeLook::Create({});
+  ASSERT_TRUE(look.ok()) << look.status();
+  look->SetFoliage(std::make_shared<FlowerModel>(*flower));
+  ASSERT_TRUE(look->Dress(&*model).ok());
+  const core::Scene scene = look->SceneOf(*model);
+  const core::Instances& own = *flower->View().objects[0].instances;
+  ASSERT_EQ(own.count(), 1u);
+  ASSERT_EQ(scene.objects.size(), 2u);
+  const core::SceneObject& leaves = scene.objects[1];
+  ASSERT_EQ(leaves.instances->count(), model->leaves.count());
+  EXPECT_EQ(scene.materials[leaves.material].name, "leaf");
+  const float unit = static_cast<float>(flower->header().recipe().unit_m());
+  for (std::size_t k = 0; k < model->leaves.count(); ++k) {
+    const core::Quaternion& leaf = model->leaves.rotations[k];
+    const float size = model->leaves.scales[k].x / unit;
+    // A point of the flower, where the leaf has it.
+    const core::Float3 p = own.translations[0];
+    const core::Float3 expected = model->leaves.translations[k] +
+                                  size * core::Rotated(leaf, {p.y, -p.x, p.z});
+    EXPECT_LT(core::Length(leaves.instances->translations[k] - expected),
+              1e-5f);
+    const core::Float3 up =
+        core::Rotated(leaves.instances->rotations[k], {0, 0, 1});
+    const core::Float3 flower_up = core::Rotated(own.rotations[0], {0, 0, 1});
+    EXPECT_LT(core::Length(up - core::Rotated(leaf, {flower_up.y, -flower_up.x,
+                                                     flower_up.z})),
+              1e-5f);
+  }
 }
 
 }  // namespace

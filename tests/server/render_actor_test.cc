@@ -289,5 +289,43 @@ TEST_F(RenderActorTest, UnknownPresetsAreNotFound) {
           .status()));
 }
 
+TEST_F(RenderActorTest, AFlowerIsDrawnWithItsBedAndNamesItsFields) {
+  const std::string size = R"("width": 60, "height": 60, "passes": 2,
+                              "finalOnly": true)";
+  const auto drawn = [&](const std::string& more) {
+    const auto messages = Run(
+        Asked(R"("flower": {"flower": {"preset": "flower/daisy")" + more + "}}",
+              size));
+    EXPECT_FALSE(messages.empty());
+    return messages;
+  };
+  const auto one = drawn("");
+  EXPECT_EQ(PixelsOf(one, 2).size(), 60u * 60 * 3);
+  // Not a picture of the ground and the sky alone.
+  EXPECT_NE(PixelsOf(one, 2), PixelsOf(drawn(R"(, "stage": 0)"), 2));
+  EXPECT_NE(one.front().header().recipe_hash(),
+            drawn(R"(, "plants": 4)").front().header().recipe_hash());
+  EXPECT_THAT(FieldsOf(Asked(R"("flower": {"flower": {"preset":
+                  "flower/daisy", "stage": 2}})",
+                             size)),
+              ElementsAre("flower.flower.preset.stage"));
+  EXPECT_THAT(FieldsOf(Asked(R"("flower": {})", size)),
+              ElementsAre("flower.flower"));
+  v1::EstimateRenderRequest ask;
+  *ask.mutable_request() =
+      Asked(R"("flower": {"flower": {"preset": "flower/rose"}})", size);
+  const auto estimate = actor_->renders().Estimate(ask);
+  ASSERT_TRUE(estimate.ok()) << estimate.status();
+  EXPECT_GT(estimate->triangles_most(), 1000);
+}
+
+TEST_F(RenderActorTest, ALeafsShapeIsChecked) {
+  EXPECT_THAT(FieldsOf(Asked(R"("tree": {"tree": {"recipe": {"leaves": {}}},
+          "leafShape": {"width": 3, "blades": 99, "spreadDeg": -1}})",
+                             R"("width": 20, "height": 20)")),
+              ElementsAre("tree.leaf_shape.width", "tree.leaf_shape.blades",
+                          "tree.leaf_shape.spread_deg"));
+}
+
 }  // namespace
 }  // namespace terrane::server
