@@ -378,7 +378,7 @@ done
 row flower-rose-stage "Figure 11, a rose from bud to bloom: stages 0, 0.33, 0.67 and 1."
 flower flower/pansy "A face: dark blotches that run out in rays, a yellow eye, two darker petals behind." --tilt 10 --turn 0
 flower flower/water-lily "Petals that lie open around golden stamens, above their pads." --tilt 30
-flower flower/sunflower "Two families of spirals, 34 one way and 55 the other." --tilt 12 --turn 0
+flower flower/sunflower-head "Spirals that run both ways, and no floret in another's place." --tilt 80 --no-ground
 for name in flat wavy curled; do
   run render --local --preset "flower/leaf-$name" --width 300 --height 300 --passes 32 --tilt 50 --out "$pictures/flower-leaf-${#commands[@]}.png"
 done
@@ -393,6 +393,7 @@ done
 row flower-method "Figure 12, three methods: an iterated function system's flat ragged petals, Bezier patches without ruffles, and the paper's."
 
 say "## Ours" ""
+flower flower/sunflower "The head nods a little; its florets stand in spirals." --tilt 12 --turn 0
 flower flower/daisy "A yellow dome in a ring of white." --tilt 35
 flower flower/tulip "A cup that is still closing at its rim." --tilt 15
 flower flower/lily "Six petals that roll back, stamens that reach out." --tilt 12
