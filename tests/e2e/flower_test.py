@@ -135,7 +135,7 @@ class FlowerTest(unittest.TestCase):
         for what, arguments in cases.items():
             self.assertIn(what, self.local(*arguments, expected=1).stderr)
         usage = {
-            "--out: must end in .glb or .obj": [*rose, "--out", self.folder / "f.stl"],
+            "--out: must end in .glb, .obj, .png or .exr": [*rose, "--out", self.folder / "f.stl"],
             "--method": [*rose, "--method", "origami", *out],
             "--out is required": rose,
         }

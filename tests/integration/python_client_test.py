@@ -17,6 +17,7 @@ from google.protobuf import any_pb2, descriptor_pb2, descriptor_pool, message_fa
 SERVER, STUBS = sys.argv[1:3]
 sys.path.insert(0, STUBS)
 
+from terrane.v1 import flower_pb2, flower_pb2_grpc  # noqa: E402
 from terrane.v1 import common_pb2, info_pb2, info_pb2_grpc, raster_pb2, raster_pb2_grpc  # noqa: E402
 from terrane.v1 import render_pb2, render_pb2_grpc  # noqa: E402
 from terrane.v1 import spot_table_pb2, spot_table_pb2_grpc  # noqa: E402
@@ -268,6 +269,19 @@ class PythonClientTest(unittest.TestCase):
         self.assertGreater(noise[0], 1.5 * noise[1])
         self.assertGreater(noise[1], 1.5 * noise[2])
         self.assertTrue((pictures[64] >= 0).all())
+
+    def test_a_bed_of_flowers_is_prototypes_and_instances(self):
+        request = flower_pb2.StreamFlowerRequest(flower=flower_pb2.FlowerChoice(preset="flower/rose", plants=5))
+        header, *parts = flower_pb2_grpc.FlowerServiceStub(self.channel).StreamFlower(request, timeout=60)
+        self.assertEqual(header.header.parts, len(parts))
+        meshes = [part.prototype for part in parts if part.HasField("prototype")]
+        self.assertEqual(header.header.prototypes, len({mesh.prototype for mesh in meshes}))
+        rows = [part.instances for part in parts if part.HasField("instances")]
+        self.assertEqual(header.header.rows, sum(row.rows for row in rows))
+        quaternions = numpy.concatenate([numpy.frombuffer(row.rotations, "<f4").reshape(-1, 4) for row in rows])
+        numpy.testing.assert_allclose(numpy.linalg.norm(quaternions, axis=1), 1, atol=1e-5)
+        plants = numpy.concatenate([numpy.frombuffer(row.plants, "<u4") for row in rows])
+        self.assertEqual(sorted(set(plants)), [0, 1, 2, 3, 4])
 
     def test_memory_stays_flat_over_large_trees(self):
         # A tree of a million rows is 49 MB; the server keeps the branches that wait
