@@ -162,14 +162,15 @@ TEST(Shading, AnglesAreGuardedWhereTheHalfVectorIsLevel) {
 }
 
 TEST(Shading, GlossFollowsFromRoughnessUnlessGiven) {
-  Material material;
-  material.roughness = 0.25f;
-  EXPECT_EQ(material.Gloss(), 0.75f);
-  EXPECT_NEAR(Finish(material, ShadingModel::kLiteral).exponent(),
-              std::pow(8192, 0.75), 1e-9);
-  material.gloss = 0.5f;
-  EXPECT_NEAR(Finish(material, ShadingModel::kLiteral).exponent(),
-              std::sqrt(8192), 1e-9);
+  const auto exponent = [](const Material& material) {
+    return Finish(material, ShadingModel::kLiteral).exponent();
+  };
+  const Material plain = {.roughness = 0.25f};
+  EXPECT_EQ(plain.Gloss(), 0.75f);
+  EXPECT_NEAR(exponent(plain), std::pow(8192, 0.75), 1e-9);
+  const Material glossy = {.roughness = 0.25f, .gloss = 0.5f};
+  EXPECT_EQ(glossy.Gloss(), 0.5f);
+  EXPECT_NEAR(exponent(glossy), std::sqrt(8192), 1e-9);
 }
 
 }  // namespace
