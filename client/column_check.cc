@@ -2,7 +2,6 @@
 
 #include <xxhash.h>
 
-#include <cstring>
 #include <memory>
 
 namespace terrane::client {
@@ -37,14 +36,6 @@ absl::Status CheckPlace(const std::string& block, std::int64_t came,
   if (came == expected) return absl::OkStatus();
   return WrongBlock(block,
                     "came where " + std::to_string(expected) + " belongs");
-}
-
-std::uint32_t ElementOf(const std::string& column, std::int64_t index) {
-  std::uint32_t value = 0;
-  std::memcpy(&value,
-              column.data() + static_cast<std::size_t>(index) * sizeof(value),
-              sizeof(value));
-  return value;
 }
 
 }  // namespace terrane::client

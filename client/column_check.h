@@ -29,9 +29,6 @@ absl::Status CheckColumns(const std::string& block,
 absl::Status CheckPlace(const std::string& block, std::int64_t came,
                         std::int64_t expected);
 
-// Element `index` of a column of uint32.
-std::uint32_t ElementOf(const std::string& column, std::int64_t index);
-
 }  // namespace terrane::client
 
 #endif  // TERRANE_CLIENT_COLUMN_CHECK_H_

@@ -1,30 +1,13 @@
 #include "client/flower_model.h"
 
-#include <cstring>
 #include <string>
 #include <utility>
 
 #include "client/column_check.h"
+#include "core/base/column_bytes.h"
 
 namespace terrane::client {
 namespace {
-
-// Appends the values of a column's bytes.
-template <typename Value>
-void Append(const std::string& bytes, std::vector<Value>* column) {
-  const std::size_t count = bytes.size() / sizeof(Value);
-  const std::size_t before = column->size();
-  column->resize(before + count);
-  std::memcpy(column->data() + before, bytes.data(), count * sizeof(Value));
-}
-
-// Value `index` of a column's bytes.
-template <typename Value>
-Value At(const std::string& bytes, std::size_t index) {
-  Value value;
-  std::memcpy(&value, bytes.data() + index * sizeof(Value), sizeof(Value));
-  return value;
-}
 
 core::Material MaterialOf(const v1::FlowerMaterial& message) {
   core::Material material;
@@ -75,11 +58,11 @@ void FlowerModel::AddPrototype(const v1::PrototypePart& part) {
   Prototype& prototype =
       prototypes_[static_cast<std::size_t>(part.prototype())];
   if (part.has_info()) prototype.info = part.info();
-  Append(part.positions(), &prototype.mesh.positions);
-  Append(part.normals(), &prototype.mesh.normals);
-  Append(part.uvs(), &prototype.mesh.uvs);
-  Append(part.colors(), &prototype.mesh.colors);
-  Append(part.indices(), &prototype.mesh.indices);
+  core::AppendColumn(part.positions(), &prototype.mesh.positions);
+  core::AppendColumn(part.normals(), &prototype.mesh.normals);
+  core::AppendColumn(part.uvs(), &prototype.mesh.uvs);
+  core::AppendColumn(part.colors(), &prototype.mesh.colors);
+  core::AppendColumn(part.indices(), &prototype.mesh.indices);
   data_bytes_ += static_cast<std::int64_t>(
       part.positions().size() + part.normals().size() + part.uvs().size() +
       part.colors().size() + part.indices().size());
@@ -87,12 +70,15 @@ void FlowerModel::AddPrototype(const v1::PrototypePart& part) {
 
 void FlowerModel::AddInstances(const v1::InstanceRows& rows) {
   constexpr std::int64_t kInstanceBytes = 53;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(rows.rows()); ++k) {
+  for (std::int64_t k = 0; k < rows.rows(); ++k) {
     core::Instances& instances =
-        prototypes_[At<std::uint32_t>(rows.prototypes(), k)].instances;
-    instances.translations.push_back(At<core::Float3>(rows.translations(), k));
-    instances.rotations.push_back(At<core::Quaternion>(rows.rotations(), k));
-    instances.scales.push_back(At<core::Float3>(rows.scales(), k));
+        prototypes_[core::ElementOf<std::uint32_t>(rows.prototypes(), k)]
+            .instances;
+    instances.translations.push_back(
+        core::ElementOf<core::Float3>(rows.translations(), k));
+    instances.rotations.push_back(
+        core::ElementOf<core::Quaternion>(rows.rotations(), k));
+    instances.scales.push_back(core::ElementOf<core::Float3>(rows.scales(), k));
   }
   data_bytes_ += rows.rows() * kInstanceBytes;
 }

@@ -1,6 +1,7 @@
 #include "client/flower_verifier.h"
 
 #include "client/column_check.h"
+#include "core/base/column_bytes.h"
 
 namespace terrane::client {
 
@@ -58,7 +59,8 @@ absl::Status FlowerVerifier::CheckPrototype(const std::string& name,
   if (!status.ok() || part.prototype() != prototype_) return status;
   const auto indices = static_cast<std::int64_t>(part.indices().size() / 4);
   for (std::int64_t k = 0; k < indices; ++k) {
-    const std::int64_t vertex = ElementOf(part.indices(), k);
+    const std::int64_t vertex =
+        core::ElementOf<std::uint32_t>(part.indices(), k);
     if (vertex >= info_.vertices()) {
       return WrongBlock(name, "has a triangle with vertex " +
                                   std::to_string(vertex) + " of " +
@@ -83,7 +85,8 @@ absl::Status FlowerVerifier::CheckInstances(const std::string& name,
                    rows.checksum());
   if (!status.ok()) return status;
   for (std::int64_t k = 0; k < count; ++k) {
-    const std::int64_t prototype = ElementOf(rows.prototypes(), k);
+    const std::int64_t prototype =
+        core::ElementOf<std::uint32_t>(rows.prototypes(), k);
     if (prototype >= header_.prototypes()) {
       return WrongBlock(name, "has an instance of prototype " +
                                   std::to_string(prototype) + " of " +

@@ -1,13 +1,13 @@
 #include "client/tree_rows.h"
 
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/base/column_bytes.h"
 #include "core/mesh/float3.h"
 #include "core/mesh/grid_mesh.h"
 #include "core/mesh/leaf_mesh.h"
@@ -15,18 +15,10 @@
 namespace terrane::client {
 namespace {
 
-// Appends the elements of a column of bytes.
-template <typename Value>
-void AppendColumn(const std::string& bytes, std::vector<Value>* column) {
-  const std::size_t before = column->size();
-  column->resize(before + bytes.size() / sizeof(Value));
-  std::memcpy(column->data() + before, bytes.data(), bytes.size());
-}
-
 template <typename Value>
 std::vector<Value> ColumnOf(const std::string& bytes) {
   std::vector<Value> column;
-  AppendColumn(bytes, &column);
+  core::AppendColumn(bytes, &column);
   return column;
 }
 
@@ -37,15 +29,15 @@ void AppendRows(const v1::SegmentRows& rows, core::SegmentBlock* tree) {
     tree->first_row = rows.first_row();
     tree->first_generation = rows.first_generation();
   }
-  AppendColumn(rows.parents(), &tree->parent);
-  AppendColumn(rows.starts(), &tree->start);
-  AppendColumn(rows.ends(), &tree->end);
-  AppendColumn(rows.radius_starts(), &tree->radius_start);
-  AppendColumn(rows.radius_ends(), &tree->radius_end);
-  AppendColumn(rows.flags(), &tree->flags);
-  AppendColumn(rows.attaches(), &tree->attach);
-  AppendColumn(rows.chromosomes(), &tree->chromosome);
-  AppendColumn(rows.extensions(), &tree->extension);
+  core::AppendColumn(rows.parents(), &tree->parent);
+  core::AppendColumn(rows.starts(), &tree->start);
+  core::AppendColumn(rows.ends(), &tree->end);
+  core::AppendColumn(rows.radius_starts(), &tree->radius_start);
+  core::AppendColumn(rows.radius_ends(), &tree->radius_end);
+  core::AppendColumn(rows.flags(), &tree->flags);
+  core::AppendColumn(rows.attaches(), &tree->attach);
+  core::AppendColumn(rows.chromosomes(), &tree->chromosome);
+  core::AppendColumn(rows.extensions(), &tree->extension);
   for (const v1::GenerationMark& mark : rows.marks()) {
     tree->marks.push_back({mark.generation(), mark.end_row()});
   }
@@ -58,11 +50,11 @@ absl::Status AppendTubes(const v1::TubeBlock& block, core::Mesh* mesh) {
         "a mesh numbers at most " + std::to_string(core::kMaxMeshVertices) +
         " vertices; leave generations out with --lod or --depth");
   }
-  AppendColumn(block.positions(), &mesh->positions);
-  AppendColumn(block.normals(), &mesh->normals);
-  AppendColumn(block.uvs(), &mesh->uvs);
+  core::AppendColumn(block.positions(), &mesh->positions);
+  core::AppendColumn(block.normals(), &mesh->normals);
+  core::AppendColumn(block.uvs(), &mesh->uvs);
   const std::size_t first = mesh->indices.size();
-  AppendColumn(block.indices(), &mesh->indices);
+  core::AppendColumn(block.indices(), &mesh->indices);
   for (std::size_t k = first; k < mesh->indices.size(); ++k) {
     mesh->indices[k] += static_cast<std::uint32_t>(before);
   }
@@ -70,7 +62,7 @@ absl::Status AppendTubes(const v1::TubeBlock& block, core::Mesh* mesh) {
 }
 
 void AppendLeaves(const v1::LeafRows& leaves, core::Instances* instances) {
-  AppendColumn(leaves.positions(), &instances->translations);
+  core::AppendColumn(leaves.positions(), &instances->translations);
   const auto directions = ColumnOf<core::Float3>(leaves.directions());
   const auto normals = ColumnOf<core::Float3>(leaves.normals());
   const auto sizes = ColumnOf<float>(leaves.sizes());

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "client/column_check.h"
+#include "core/base/column_bytes.h"
 
 namespace terrane::client {
 namespace {
@@ -13,7 +14,7 @@ absl::Status CheckParents(const std::string& block,
                           const v1::SegmentRows& rows) {
   for (std::int64_t k = 0; k < rows.rows(); ++k) {
     const std::int64_t row = rows.first_row() + k;
-    if (row > 0 && ElementOf(rows.parents(), k) >= row) {
+    if (row > 0 && core::ElementOf<std::uint32_t>(rows.parents(), k) >= row) {
       return WrongBlock(block, "row " + std::to_string(row) +
                                    " has a parent that is not before it");
     }
@@ -67,7 +68,8 @@ absl::Status CheckTriangles(const std::string& name,
                             const v1::TubeBlock& block) {
   const auto count = static_cast<std::int64_t>(block.indices().size() / 4);
   for (std::int64_t k = 0; k < count; ++k) {
-    const std::int64_t vertex = ElementOf(block.indices(), k);
+    const std::int64_t vertex =
+        core::ElementOf<std::uint32_t>(block.indices(), k);
     if (vertex >= block.vertices()) {
       return WrongBlock(name, "has a triangle with vertex " +
                                   std::to_string(vertex) + " of " +

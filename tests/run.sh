@@ -33,14 +33,16 @@ for preset in "${presets[@]}"; do
   cmake --build --preset "${preset}"
 done
 
-failed=0
+failed=()
 for preset in "${presets[@]}"; do
   step "Testing preset ${preset}"
   exclude=()
   [[ "${preset}" == release ]] || exclude=(--label-exclude check)
-  ctest --preset "${preset}" --no-tests=error --parallel "$(nproc)" "${exclude[@]}" || failed=1
+  ctest --preset "${preset}" --no-tests=error --parallel "$(nproc)" "${exclude[@]}" ||
+    failed+=("$(sed "s/^/${preset}: /" "build/${preset}/Testing/Temporary/LastTestsFailed.log" || echo "${preset}: ctest")")
 done
-if ((failed)); then
-  echo "Some tests failed: see above." >&2
+if ((${#failed[@]})); then
+  printf '\nFailed:\n' >&2
+  printf '%s\n' "${failed[@]}" >&2
+  exit 1
 fi
-exit "${failed}"

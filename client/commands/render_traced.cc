@@ -1,5 +1,6 @@
 #include "client/commands/render_traced.h"
 
+#include <cstdint>
 #include <map>
 #include <utility>
 
@@ -145,9 +146,12 @@ void AddTracedOptions(CLI::App* command, TracedOptions* options) {
       ->transform(OneOf(kShadings))
       ->type_name("NAME")
       ->group(group);
+  // Not add_flag: CLI11 would count in the optional, and set it from the start.
   command
-      ->add_flag("--ground,!--no-ground", options->ground,
-                 "Traced: a plain ground or none (default: for plants)")
+      ->add_flag_function(
+          "--ground,!--no-ground",
+          [options](std::int64_t count) { options->ground = count > 0; },
+          "Traced: a plain ground or none (default: for plants)")
       ->group(group);
   command
       ->add_option("--exposure", options->exposure,

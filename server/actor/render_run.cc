@@ -10,7 +10,7 @@
 #include "core/raytrace/ray_tracer.h"
 #include "core/raytrace/traced_scene.h"
 #include "server/actor/headed_run.h"
-#include "server/convert/column_bytes.h"
+#include "server/convert/column_checksum.h"
 
 namespace terrane::server {
 namespace {

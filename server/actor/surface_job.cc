@@ -13,7 +13,7 @@
 #include "core/surface/surface.h"
 #include "server/actor/height_tile.h"
 #include "server/actor/presets.h"
-#include "server/convert/column_bytes.h"
+#include "server/convert/column_checksum.h"
 #include "server/convert/content_hash.h"
 #include "server/convert/enum_table.h"
 #include "server/convert/surface_convert.h"

@@ -2,9 +2,10 @@
 
 #include <optional>
 
+#include "core/base/column_bytes.h"
 #include "core/base/field_checks.h"
 #include "core/tree/estimate.h"
-#include "server/convert/column_bytes.h"
+#include "server/convert/column_checksum.h"
 #include "server/convert/enum_table.h"
 #include "server/convert/non_zero.h"
 
@@ -228,15 +229,15 @@ void WriteSegments(const core::SegmentBlock& block, v1::SegmentRows* rows) {
   rows->set_first_row(block.first_row);
   rows->set_first_generation(block.first_generation);
   rows->set_rows(static_cast<int>(block.rows()));
-  WriteColumn(block.parent, rows->mutable_parents());
-  WriteColumn(block.start, rows->mutable_starts());
-  WriteColumn(block.end, rows->mutable_ends());
-  WriteColumn(block.radius_start, rows->mutable_radius_starts());
-  WriteColumn(block.radius_end, rows->mutable_radius_ends());
-  WriteColumn(block.flags, rows->mutable_flags());
-  WriteColumn(block.attach, rows->mutable_attaches());
-  WriteColumn(block.chromosome, rows->mutable_chromosomes());
-  WriteColumn(block.extension, rows->mutable_extensions());
+  core::WriteColumn(block.parent, rows->mutable_parents());
+  core::WriteColumn(block.start, rows->mutable_starts());
+  core::WriteColumn(block.end, rows->mutable_ends());
+  core::WriteColumn(block.radius_start, rows->mutable_radius_starts());
+  core::WriteColumn(block.radius_end, rows->mutable_radius_ends());
+  core::WriteColumn(block.flags, rows->mutable_flags());
+  core::WriteColumn(block.attach, rows->mutable_attaches());
+  core::WriteColumn(block.chromosome, rows->mutable_chromosomes());
+  core::WriteColumn(block.extension, rows->mutable_extensions());
   rows->clear_marks();
   for (const core::GenerationMark& mark : block.marks) {
     v1::GenerationMark* const written = rows->add_marks();
@@ -253,10 +254,10 @@ void WriteTubes(const core::Mesh& mesh, std::int64_t index,
                 v1::TubeBlock* block) {
   block->set_index(index);
   block->set_vertices(static_cast<int>(mesh.positions.size()));
-  WriteColumn(mesh.positions, block->mutable_positions());
-  WriteColumn(mesh.normals, block->mutable_normals());
-  WriteColumn(mesh.uvs, block->mutable_uvs());
-  WriteColumn(mesh.indices, block->mutable_indices());
+  core::WriteColumn(mesh.positions, block->mutable_positions());
+  core::WriteColumn(mesh.normals, block->mutable_normals());
+  core::WriteColumn(mesh.uvs, block->mutable_uvs());
+  core::WriteColumn(mesh.indices, block->mutable_indices());
   block->set_checksum(ColumnChecksum({&block->positions(), &block->normals(),
                                       &block->uvs(), &block->indices()}));
 }
@@ -265,11 +266,11 @@ void WriteLeaves(const core::LeafBlock& block, std::int64_t first_leaf,
                  v1::LeafRows* rows) {
   rows->set_first_leaf(first_leaf);
   rows->set_leaves(static_cast<int>(block.count()));
-  WriteColumn(block.row, rows->mutable_rows());
-  WriteColumn(block.position, rows->mutable_positions());
-  WriteColumn(block.direction, rows->mutable_directions());
-  WriteColumn(block.normal, rows->mutable_normals());
-  WriteColumn(block.size, rows->mutable_sizes());
+  core::WriteColumn(block.row, rows->mutable_rows());
+  core::WriteColumn(block.position, rows->mutable_positions());
+  core::WriteColumn(block.direction, rows->mutable_directions());
+  core::WriteColumn(block.normal, rows->mutable_normals());
+  core::WriteColumn(block.size, rows->mutable_sizes());
   rows->set_checksum(
       ColumnChecksum({&rows->rows(), &rows->positions(), &rows->directions(),
                       &rows->normals(), &rows->sizes()}));

@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "server/convert/column_bytes.h"
+#include "core/base/column_bytes.h"
+#include "server/convert/column_checksum.h"
 #include "server/convert/flower_convert.h"
 #include "server/convert/flower_enums.h"
 
@@ -225,17 +226,17 @@ void WritePrototypePart(const core::FlowerPrototype& prototype, std::size_t run,
 void WriteInstances(const core::InstanceBlock& block, v1::InstanceRows* rows) {
   rows->set_first_row(block.first_row);
   rows->set_rows(static_cast<int>(block.rows()));
-  WriteColumn(block.prototype, rows->mutable_prototypes());
-  WriteColumn(block.translation, rows->mutable_translations());
-  WriteColumn(block.rotation, rows->mutable_rotations());
-  WriteColumn(block.scale, rows->mutable_scales());
+  core::WriteColumn(block.prototype, rows->mutable_prototypes());
+  core::WriteColumn(block.translation, rows->mutable_translations());
+  core::WriteColumn(block.rotation, rows->mutable_rotations());
+  core::WriteColumn(block.scale, rows->mutable_scales());
   std::string* const organs = rows->mutable_organs();
   organs->clear();
   for (const core::FlowerOrgan organ : block.organ) {
     organs->push_back(static_cast<char>(WriteEnum(kFlowerOrgans, organ)));
   }
-  WriteColumn(block.n, rows->mutable_numbers());
-  WriteColumn(block.plant, rows->mutable_plants());
+  core::WriteColumn(block.n, rows->mutable_numbers());
+  core::WriteColumn(block.plant, rows->mutable_plants());
   rows->set_checksum(ColumnChecksum(
       {&rows->prototypes(), &rows->translations(), &rows->rotations(),
        &rows->scales(), &rows->organs(), &rows->numbers(), &rows->plants()}));

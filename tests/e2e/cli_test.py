@@ -412,6 +412,21 @@ class CliTest(unittest.TestCase):
             # Debian's GDAL reads no OpenEXR.
             self.assertEqual((self.folder / "l.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
 
+    def test_plants_stand_on_a_ground_and_the_rest_does_not(self):
+        def picture(preset, *options):
+            out = self.folder / "ground.png"
+            self.run_terrane("render", "--preset", preset, "--style", "traced", "--local", "--width", "60", "--height", "45",
+                             "--passes", "2", *options, "--out", out)
+            return out.read_bytes()
+
+        for preset, usual, other in [
+            ("flower/daisy", "--ground", "--no-ground"),
+            ("tree/plain", "--ground", "--no-ground"),
+            ("surface/fig07", "--no-ground", "--ground"),
+        ]:
+            self.assertEqual(picture(preset), picture(preset, usual), preset)
+            self.assertNotEqual(picture(preset), picture(preset, other), preset)
+
     def test_interrupt_ends_a_traced_picture(self):
         process = subprocess.Popen(
             [TERRANE, "render", "--preset", "surface/fig07", "--style", "traced", "--passes", "4096", "--server",

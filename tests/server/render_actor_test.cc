@@ -10,7 +10,7 @@
 
 #include "core/base/violations.h"
 #include "server/actor/actor.h"
-#include "server/convert/column_bytes.h"
+#include "server/convert/column_checksum.h"
 #include "tests/server/recipe_text.h"
 
 namespace terrane::server {

@@ -1,9 +1,9 @@
 // The scene of a tree: its tubes as one mesh, its leaves as instances of one.
 #include <algorithm>
-#include <cstring>
 #include <utility>
 #include <vector>
 
+#include "core/base/column_bytes.h"
 #include "core/base/field_checks.h"
 #include "core/mesh/leaf_mesh.h"
 #include "server/actor/scenes/scene_source.h"
@@ -27,14 +27,6 @@ core::Material UsualLeaf() {
   material.roughness = 0.6f;
   material.double_sided = true;
   return material;
-}
-
-// Appends the values of a bytes column.
-template <typename Value>
-void Append(const std::string& bytes, std::vector<Value>* column) {
-  const std::size_t before = column->size();
-  column->resize(before + bytes.size() / sizeof(Value));
-  std::memcpy(column->data() + before, bytes.data(), bytes.size());
 }
 
 class TreeScene : public SceneSource {
@@ -90,9 +82,9 @@ class TreeScene : public SceneSource {
     const v1::TubeBlock& block = tube_message_.block();
     const auto first = static_cast<std::uint32_t>(wood_.positions.size());
     const std::size_t indices = wood_.indices.size();
-    Append(block.positions(), &wood_.positions);
-    Append(block.normals(), &wood_.normals);
-    Append(block.indices(), &wood_.indices);
+    core::AppendColumn(block.positions(), &wood_.positions);
+    core::AppendColumn(block.normals(), &wood_.normals);
+    core::AppendColumn(block.indices(), &wood_.indices);
     for (std::size_t i = indices; i < wood_.indices.size(); ++i) {
       wood_.indices[i] += first;
     }
@@ -106,10 +98,10 @@ class TreeScene : public SceneSource {
     std::vector<core::Float3> directions;
     std::vector<core::Float3> normals;
     std::vector<float> sizes;
-    Append(rows.positions(), &places_.translations);
-    Append(rows.directions(), &directions);
-    Append(rows.normals(), &normals);
-    Append(rows.sizes(), &sizes);
+    core::AppendColumn(rows.positions(), &places_.translations);
+    core::AppendColumn(rows.directions(), &directions);
+    core::AppendColumn(rows.normals(), &normals);
+    core::AppendColumn(rows.sizes(), &sizes);
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       places_.rotations.push_back(
           core::LeafRotation(directions[i], normals[i]));

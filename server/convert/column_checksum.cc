@@ -1,4 +1,4 @@
-#include "server/convert/column_bytes.h"
+#include "server/convert/column_checksum.h"
 
 #include <xxh_x86dispatch.h>
 
