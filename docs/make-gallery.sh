@@ -378,7 +378,7 @@ done
 row flower-rose-stage "Figure 11, a rose from bud to bloom: stages 0, 0.33, 0.67 and 1."
 flower flower/pansy "A face: dark blotches that run out in rays, a yellow eye, two darker petals behind." --tilt 10 --turn 0
 flower flower/water-lily "Petals that lie open around golden stamens, above their pads." --tilt 30
-flower flower/sunflower-head "Spirals that run both ways, and no floret in another's place." --tilt 80 --no-ground
+flower flower/sunflower-head "Spirals that run both ways, and no floret in another's place." --tilt 80
 for name in flat wavy curled; do
   run render --local --preset "flower/leaf-$name" --width 300 --height 300 --passes 32 --tilt 50 --out "$pictures/flower-leaf-${#commands[@]}.png"
 done
@@ -406,8 +406,8 @@ done
 row flower-shading "Lambert, Blinn-Phong, the paper's model as printed, and the one that conserves energy."
 
 say "## Beds" "" "One set of prototypes, a row for each petal of each plant: no two plants are alike." ""
-run render --local --preset flower/daisy --plants 100 --width 700 --height 420 --passes 32 --tilt 24 --out "$pictures/flower-bed.png"
-picture flower-bed "A hundred daisies" "A hundred daisies on a grid that chance has moved."
+run render --local --preset flower/rose --plants 25 --width 700 --height 420 --passes 32 --tilt 22 --out "$pictures/flower-bed.png"
+picture flower-bed "Twenty-five roses" "Twenty-five roses on a grid that chance has moved."
 }
 
 if draws ground; then draw_ground; fi
