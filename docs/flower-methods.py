@@ -5,7 +5,8 @@ Run in the root of the tree: docs/flower-methods.py [TERRANE]
 
 For the noise petals, the iterated function system and the Bezier patch: the
 numbers that the sketches need, vertices, bytes of the stream, bytes of a GLB with
-every petal in it, and the time of a plant on this machine. The table goes into
+every petal in it, and the time of fields of plants on this machine; and how many
+frames a second the ray tracer draws of those fields. The tables go into
 docs/flower.md, between its markers.
 """
 
@@ -16,6 +17,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 
 METHODS = {"perlin": "Perlin", "bezier": "Bézier", "ifs": "IFS"}
 PRESET = "flower/rose"
@@ -24,6 +26,10 @@ BEGIN, END = "<!-- methods: begin -->\n", "<!-- methods: end -->\n"
 # Plants of the field that is timed, and how often.
 FIELDS = (1, 10, 100, 1000)
 REPEATS = 5
+# A frame is a pass over this picture. Its passes are timed against one alone, so
+# that growing the field and writing the file do not count.
+FRAME = ("--width", 640, "--height", 360)
+PASSES = 17
 
 
 def run(*arguments):
@@ -39,6 +45,20 @@ def seconds(method, plants, folder):
     """Median of what the command needs from recipe to file."""
     return statistics.median(
         flower(method, "--plants", plants, "--out", folder / "field.glb")["seconds"] for _ in range(REPEATS))
+
+
+def picture_seconds(method, plants, passes, folder):
+    begin = time.monotonic()
+    subprocess.run([TERRANE, *map(str, ("render", "--preset", PRESET, "--petal-method", method, "--plants", plants,
+                                        "--local", *FRAME, "--passes", passes, "--out", folder / "field.png"))],
+                   check=True, capture_output=True)
+    return time.monotonic() - begin
+
+
+def frames_per_second(method, plants, folder):
+    spent = statistics.median(picture_seconds(method, plants, PASSES, folder) - picture_seconds(method, plants, 1, folder)
+                              for _ in range(REPEATS))
+    return (PASSES - 1) / spent
 
 
 def row(method, folder):
@@ -57,16 +77,29 @@ def row(method, folder):
     ]
 
 
-def table(folder):
-    head = ["method", "control values", "vertices", "stream", "GLB", "OBJ, expanded"]
-    head += [f"{plants:,} plant{'s' if plants > 1 else ''}" for plants in FIELDS]
-    rows = [head, ["---"] * len(head), *(row(method, folder) for method in METHODS)]
+def table(head, rows):
+    rows = [head, ["---"] * len(head), *rows]
     return "".join("| " + " | ".join(map(str, cells)) + " |\n" for cells in rows)
+
+
+def plants_of_fields():
+    return [f"{plants:,} plant{'s' if plants > 1 else ''}" for plants in FIELDS]
+
+
+def sizes(folder):
+    head = ["method", "control values", "vertices", "stream", "GLB", "OBJ, expanded", *plants_of_fields()]
+    return table(head, (row(method, folder) for method in METHODS))
+
+
+def frames(folder):
+    head = ["frames a second", *plants_of_fields()]
+    return table(head, ([METHODS[method], *(f"{frames_per_second(method, plants, folder):.1f}" for plants in FIELDS)]
+                        for method in METHODS))
 
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        text = table(pathlib.Path(folder))
+        text = sizes(pathlib.Path(folder)) + "\n" + frames(pathlib.Path(folder))
     print(text, end="")
     page = PAGE.read_text()
     pattern = re.escape(BEGIN) + ".*?" + re.escape(END)

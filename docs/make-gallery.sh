@@ -24,7 +24,7 @@ draws() { [[ $section == all || $section == "$1" ]]; }
 
 # Removes what the page showed.
 forget_pictures() {
-  [[ ! -f $page ]] || grep -oE 'gallery/[a-z0-9-]+\.png' "$page" | sort -u | sed 's|^|docs/|' | xargs -r rm -f
+  [[ ! -f $page ]] || grep -oE 'gallery/[a-z0-9-]+\.(png|svg)' "$page" | sort -u | sed 's|^|docs/|' | xargs -r rm -f
 }
 
 say() { printf '%s\n' "$@" >>"$page"; }
@@ -371,6 +371,10 @@ Wang, Zhang and Yang, Journal of Shenzhen University Science and Engineering 36(
 tables are lost; what it prints of numbers is kept, the rest is chosen here.
 
 TEXT
+docs/flower-sketches.py "$pictures/flower-sketches.svg" "$terrane"
+say "### Figure 2: sketches" "" "![Sketches](gallery/flower-sketches.svg)" "" \
+  "Half outlines of two or three points (red) and their mirror images (hollow), through base and tip by Catmull-Rom; petals have two sketches to choose from." \
+  "" '```sh' "docs/flower-sketches.py $pictures/flower-sketches.svg" '```' ""
 flower flower/rose "An open rose: a spiral of upright petals in the middle, the outer ones curled back over the sepals." --tilt 38
 for stage in 0 0.33 0.67 1; do
   run render --local --preset flower/rose --stage "$stage" --width 300 --height 400 --passes 32 --tilt 16 --out "$pictures/flower-rose-stage-${#commands[@]}.png"
