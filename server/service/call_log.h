@@ -27,6 +27,8 @@ enum class LogFormat { kText, kJson };
 struct CallRecord {
   std::string request_id;
   const char* method = "";
+  // Who asks, for fairness; never logged.
+  std::string client;
   std::string recipe_hash;
   std::int64_t tiles = 0;
   std::int64_t samples = 0;

@@ -1,0 +1,173 @@
+#include "server/flags.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+
+#include "server/service/cpu_quota.h"
+
+namespace terrane::server {
+namespace {
+
+constexpr int kExitUsage = 2;
+
+// Only what cannot be another machine's: a name other than localhost might
+// resolve to anything.
+bool IsLoopback(const std::string& address) {
+  const std::string host = HostOf(address);
+  in_addr numeric{};
+  if (inet_pton(AF_INET, host.c_str(), &numeric) == 1) {
+    return (ntohl(numeric.s_addr) >> 24) == IN_LOOPBACKNET;
+  }
+  return host == "localhost" || host == "[::1]";
+}
+
+std::string Footer() {
+  const Limits limits;
+  return "Limits of a request (GetServerInfo answers those in force):\n"
+         "  levels 0 to " +
+         std::to_string(limits.max_level) + ", " +
+         std::to_string(limits.max_stream_samples) + " samples a stream, " +
+         std::to_string(limits.max_points) + " points, " +
+         std::to_string(limits.max_profile_samples) +
+         " samples a profile,\n  " +
+         std::to_string(limits.recipe.max_discrete_constraints) +
+         " discrete and " +
+         std::to_string(limits.recipe.max_continuous_constraints) +
+         " continuous constraints, " +
+         std::to_string(limits.recipe.max_vertices) + " vertices, " +
+         std::to_string(limits.recipe.max_macro_parts) + " macro parts,\n  " +
+         std::to_string(limits.recipe.max_inline_spots) +
+         " spot points and as many lines a recipe; more as a table\n\n"
+         "Examples:\n"
+         "  terrane-server --listen 127.0.0.1:0\n"
+         "  terrane-server --workers 4 --log-format json 2>server.log\n"
+         "  terrane-server --listen 0.0.0.0:50051 --insecure   "
+         "(behind a proxy that ends TLS)\n";
+}
+
+void AddNetworkFlags(CLI::App* app, Flags* flags) {
+  app->add_option("--listen", flags->server.listen,
+                  "Address and port; port 0 takes a free one and prints it")
+      ->capture_default_str();
+  app->add_flag("--insecure", flags->insecure,
+                "Allow an address that other machines reach, without TLS");
+  app->add_flag("--reflection", flags->server.reflection,
+                "Answer gRPC server reflection (grpcurl, buf curl)");
+  app->add_option("--drain-seconds", flags->drain_seconds,
+                  "Time for running calls to end after SIGTERM or SIGINT")
+      ->check(CLI::Range(0, 3600))
+      ->capture_default_str();
+}
+
+void AddWorkFlags(CLI::App* app, Flags* flags) {
+  Limits& limits = flags->server.limits;
+  app->add_option("--workers", flags->workers,
+                  "Generating threads; 0: one per usable CPU (cgroup quota "
+                  "respected)")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app->add_option("--max-streams", limits.max_concurrent_streams,
+                  "Streams generated at the same time; four times as many may "
+                  "wait")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  app->add_option("--raster-store-mib", flags->raster_store_mib,
+                  "Memory for uploaded rasters, in MiB")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
+      ->capture_default_str();
+  app->add_option("--prepared-mib", flags->prepared_mib,
+                  "Memory for recipes made ready and kept, in MiB; what takes "
+                  "more to make ready is refused")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
+      ->capture_default_str();
+}
+
+void AddLimitFlags(CLI::App* app, Flags* flags) {
+  Limits& limits = flags->server.limits;
+  app->add_option("--max-tile-size", limits.max_tile_size,
+                  "Largest side of a tile in samples")
+      ->check(CLI::Range(2, 4097))
+      ->capture_default_str();
+  app->add_option("--max-stream-samples", limits.max_stream_samples,
+                  "Most samples of one stream")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 52))
+      ->capture_default_str();
+  app->add_option("--max-request-bytes", limits.max_request_bytes,
+                  "Largest request message; chunks of rasters included")
+      ->check(CLI::Range(std::int64_t{1} << 12, std::int64_t{1} << 26))
+      ->capture_default_str();
+  app->add_option("--max-spots", limits.recipe.max_spots,
+                  "Most spot heights of a recipe")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+}
+
+void AddLogFlags(CLI::App* app, Flags* flags) {
+  app->add_option("--log-level", flags->log_level, "Least level that is logged")
+      ->check(CLI::IsMember(
+          {"trace", "debug", "info", "warning", "error", "critical", "off"}))
+      ->capture_default_str();
+  app->add_option("--log-format", flags->log_format, "text or json")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+}
+
+// Says what is wrong with flags that are right one by one.
+std::optional<std::string> Conflict(const Flags& flags) {
+  const std::string& listen = flags.server.listen;
+  if (listen.find(':') == std::string::npos) {
+    return "--listen must be ADDRESS:PORT, got " + listen;
+  }
+  if (!flags.insecure && !IsLoopback(listen)) {
+    return "--listen " + listen +
+           " is reachable from other machines; use 127.0.0.1, or add "
+           "--insecure to serve it without TLS";
+  }
+  return std::nullopt;
+}
+
+// What follows from the flags.
+void Resolve(Flags* flags) {
+  Limits& limits = flags->server.limits;
+  limits.raster_store_bytes = flags->raster_store_mib << 20;
+  limits.prepared_bytes = flags->prepared_mib << 20;
+  limits.recipe.max_inline_spots =
+      std::min(limits.recipe.max_inline_spots, limits.recipe.max_spots);
+  limits.max_raster_samples =
+      std::min(limits.max_raster_samples,
+               limits.raster_store_bytes / std::int64_t{sizeof(float)});
+  flags->server.workers = flags->workers > 0 ? flags->workers : UsableCpus();
+}
+
+}  // namespace
+
+std::string HostOf(const std::string& address) {
+  return address.substr(0, address.rfind(':'));
+}
+
+std::optional<int> ParseFlags(int argc, char** argv, Flags* flags) {
+  CLI::App app("Serves Terrane's generators over gRPC (terrane.v1).");
+  AddNetworkFlags(&app, flags);
+  AddWorkFlags(&app, flags);
+  AddLimitFlags(&app, flags);
+  AddLogFlags(&app, flags);
+  app.set_version_flag("--version", "terrane-server " TERRANE_VERSION);
+  app.footer(Footer());
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
+  if (const std::optional<std::string> conflict = Conflict(*flags)) {
+    std::cerr << "terrane-server: " << *conflict << '\n';
+    return kExitUsage;
+  }
+  Resolve(flags);
+  return std::nullopt;
+}
+
+}  // namespace terrane::server
