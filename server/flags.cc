@@ -75,6 +75,15 @@ void AddWorkFlags(CLI::App* app, Flags* flags) {
                   "wait")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
+  app->add_option("--patience-seconds", flags->patience_seconds,
+                  "A call without a deadline is refused when it would not "
+                  "begin in this time")
+      ->check(CLI::Range(1, 86'400))
+      ->capture_default_str();
+  app->add_option("--stream-idle-seconds", flags->stream_idle_seconds,
+                  "A stream whose reader takes nothing for this time is ended")
+      ->check(CLI::Range(1, 86'400))
+      ->capture_default_str();
   app->add_option("--raster-store-mib", flags->raster_store_mib,
                   "Memory for uploaded rasters, in MiB")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
@@ -140,6 +149,8 @@ void Resolve(Flags* flags) {
   limits.max_raster_samples =
       std::min(limits.max_raster_samples,
                limits.raster_store_bytes / std::int64_t{sizeof(float)});
+  flags->server.stream_idle = std::chrono::seconds(flags->stream_idle_seconds);
+  flags->server.patience = std::chrono::seconds(flags->patience_seconds);
   flags->server.workers = flags->workers > 0 ? flags->workers : UsableCpus();
 }
 

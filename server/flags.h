@@ -16,6 +16,8 @@ struct Flags {
   int workers = 0;
   std::int64_t raster_store_mib = 1024;
   std::int64_t prepared_mib = 2048;
+  int patience_seconds = 60;
+  int stream_idle_seconds = 60;
   int drain_seconds = 30;
   std::string log_level = "info";
   std::string log_format = "text";

@@ -248,26 +248,16 @@ absl::StatusOr<v1::EstimateTilesResponse> TerrainActor::EstimateTiles(
   const auto prepared = Prepare(WithoutConditioning(planned->choice), {});
   if (!prepared.ok()) return prepared.status();
   v1::EstimateTilesResponse estimate;
-  std::int64_t samples = 0;
-  std::int64_t points = 0;
-  std::int64_t largest = 0;
-  for (const TileKind& kind : RemainingTiles(plan)) {
-    const std::int64_t tile_points = (*prepared)->terrain->GeneratedPoints(
-        {plan.level, plan.sampling, kind.example});
-    samples += kind.count * kind.example.width * kind.example.height;
-    points += kind.count * tile_points;
-    largest = std::max(largest, tile_points);
-  }
+  const TileWork work = WorkOf(*(*prepared)->terrain, plan);
   estimate.set_tiles(plan.total() - plan.first_tile);
-  estimate.set_samples(samples);
-  estimate.set_data_bytes(samples * plan.bytes_per_sample());
-  estimate.set_generated_points(points);
-  estimate.set_cpu_seconds(static_cast<double>(points) *
-                           meter_->ns_per_point() * 1e-9);
+  estimate.set_samples(work.samples);
+  estimate.set_data_bytes(work.samples * plan.bytes_per_sample());
+  estimate.set_generated_points(work.points);
+  estimate.set_cpu_seconds(meter_->Seconds(work.points));
   // Two tiles in hand, and the lattice of the one being generated.
   estimate.set_memory_bytes(2 * std::int64_t{plan.tile_size} * plan.tile_size *
                                 plan.bytes_per_sample() +
-                            largest * std::int64_t{sizeof(float)});
+                            work.largest * std::int64_t{sizeof(float)});
   estimate.set_prepare_seconds(preparation.cpu_seconds);
   estimate.set_prepare_bytes(preparation.memory_bytes);
   return estimate;

@@ -41,6 +41,9 @@ class TileJob {
   // Tiles of the request, and the index of the first one to send.
   virtual std::int64_t total() const = 0;
   virtual std::int64_t first() const = 0;
+  // What the tiles from first() on take on one core of this machine, as such
+  // work did so far.
+  virtual double EstimatedSeconds() const = 0;
   // Generates and encodes tile `index`, first() <= index < total().
   virtual absl::Status MakeTile(std::int64_t index, std::stop_token stop,
                                 core::TileScratch* scratch,

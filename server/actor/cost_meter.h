@@ -20,6 +20,11 @@ class CostMeter {
     return ns_per_point_.load(std::memory_order_relaxed);
   }
 
+  // Of so many points.
+  double Seconds(std::int64_t points) const {
+    return static_cast<double>(points) * ns_per_point() * 1e-9;
+  }
+
   void Add(std::chrono::nanoseconds spent, std::int64_t points) {
     if (points <= 0) return;
     const double measured =

@@ -53,8 +53,9 @@ v1::FlowerHeader HeaderOf(const core::Flower& flower) {
 class FlowerRun : public HeadedRun<v1::StreamFlowerResponse, v1::FlowerHeader> {
  public:
   FlowerRun(std::shared_ptr<const core::Flower> flower, v1::FlowerHeader header,
-            std::int64_t first_part)
-      : HeadedRun(std::move(header)),
+            std::int64_t first_part, const CostMeter& meter)
+      : HeadedRun(std::move(header),
+                  meter.Seconds(flower->estimate().instances)),
         flower_(std::move(flower)),
         prototype_parts_(PrototypeParts(*flower_)),
         part_(first_part),
@@ -181,7 +182,7 @@ OpenedRun<v1::StreamFlowerResponse> FlowerMaker::Open(
                header.parts());
   if (!violations.empty()) return violations.ToStatus();
   return std::make_unique<FlowerRun>(*flower, std::move(header),
-                                     request.first_part());
+                                     request.first_part(), *meter_);
 }
 
 absl::StatusOr<v1::EstimateFlowerResponse> FlowerMaker::Estimate(
@@ -200,8 +201,7 @@ absl::StatusOr<v1::EstimateFlowerResponse> FlowerMaker::Estimate(
   response.set_instance_bytes(estimate.instance_bytes);
   response.set_control_values(estimate.control_values);
   response.set_cpu_seconds(
-      static_cast<double>(estimate.vertices + estimate.instances) *
-      meter_->ns_per_point() * 1e-9);
+      meter_->Seconds(estimate.vertices + estimate.instances));
   // Two messages in hand and the block that they come from.
   response.set_memory_bytes(estimate.prototype_bytes +
                             3 * std::min(estimate.instances, kBlockRows) *

@@ -65,7 +65,9 @@ class ForestRun : public HeadedRun<v1::StreamForestResponse, v1::TreeHeader> {
  public:
   ForestRun(ChosenTree chosen, const v1::StreamForestRequest& request,
             const core::TreeLimits& limits, std::shared_ptr<CostMeter> meter)
-      : HeadedRun(std::move(chosen.header)),
+      : HeadedRun(std::move(chosen.header),
+                  meter->Seconds((TreesOf(request) - request.first_tree()) *
+                                 chosen.tree->estimate().segments_most)),
         spec_(chosen.tree->spec()),
         request_(request),
         limits_(limits),

@@ -15,9 +15,12 @@ namespace terrane::server {
 template <typename Message, typename Header>
 class HeadedRun : public MessageRun<Message> {
  public:
-  explicit HeadedRun(Header header) : header_(std::move(header)) {}
+  HeadedRun(Header header, double estimated_seconds)
+      : header_(std::move(header)), estimated_seconds_(estimated_seconds) {}
 
   const std::string& recipe_hash() const final { return header_.recipe_hash(); }
+
+  double EstimatedSeconds() const final { return estimated_seconds_; }
 
   bool Done() const final { return gave_header_ && AllMade(); }
 
@@ -40,6 +43,7 @@ class HeadedRun : public MessageRun<Message> {
   virtual absl::Status NextPart(std::stop_token stop, Message* message) = 0;
 
   const Header header_;
+  const double estimated_seconds_;
   bool gave_header_ = false;
   std::int64_t items_ = 0;
 };

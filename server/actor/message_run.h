@@ -24,6 +24,9 @@ class MessageRun {
 
   // Of the resolved recipe that everything comes from.
   virtual const std::string& recipe_hash() const = 0;
+  // What all messages take on one core of this machine, at most, as such work
+  // did so far.
+  virtual double EstimatedSeconds() const = 0;
   // Whether every message was made.
   virtual bool Done() const = 0;
   // Replaces *message by the next one.

@@ -85,8 +85,7 @@ absl::StatusOr<v1::EstimateRenderResponse> RenderMaker::Estimate(
   estimate.set_data_bytes(plan.BytesFrom(plan.first_band));
   estimate.set_triangles_most(size->triangles);
   estimate.set_paths(plan.pixels() * plan.passes);
-  estimate.set_cpu_seconds(static_cast<double>(estimate.paths()) *
-                           meter_->ns_per_point() * 1e-9);
+  estimate.set_cpu_seconds(meter_->Seconds(estimate.paths()));
   estimate.set_memory_bytes_most(RenderBytes(*size, plan.pixels()));
   return estimate;
 }

@@ -42,7 +42,8 @@ class RenderRun : public HeadedRun<v1::StreamRenderResponse, v1::RenderHeader> {
   RenderRun(std::unique_ptr<SceneSource> source, const RenderPlan& plan,
             std::shared_ptr<MemoryBudget> memory,
             std::shared_ptr<CostMeter> meter)
-      : HeadedRun(HeaderOf(*source, plan)),
+      : HeadedRun(HeaderOf(*source, plan),
+                  meter->Seconds(plan.pixels() * plan.passes)),
         source_(std::move(source)),
         plan_(plan),
         stages_(plan.Stages()),

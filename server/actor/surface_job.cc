@@ -95,6 +95,28 @@ std::span<float> Floats(std::size_t samples, std::size_t count,
   return {reinterpret_cast<float*>(bytes->data()), samples * count};
 }
 
+// Samples that the tiles from first_tile on take, those before them in carried
+// rows included. Tiles of a column cost alike.
+std::int64_t GeneratedSamples(const PlannedSurface& planned) {
+  const TilePlan& plan = planned.plan.tiles;
+  std::int64_t samples = 0;
+  for (std::int64_t column = 0; column < plan.columns; ++column) {
+    const std::int64_t skipped =
+        plan.first_tile / plan.columns +
+        (column < plan.first_tile % plan.columns ? 1 : 0);
+    for (std::int64_t row : {std::int64_t{0}, plan.rows - 1}) {
+      const bool last = row == plan.rows - 1;
+      const std::int64_t tiles =
+          last ? (skipped < plan.rows ? 1 : 0)
+               : std::max<std::int64_t>(plan.rows - 1 - skipped, 0);
+      samples += tiles * planned.surface->GeneratedSamples(
+                             planned.TileRequest(row * plan.columns + column));
+      if (plan.rows == 1) break;
+    }
+  }
+  return samples;
+}
+
 class SurfaceJobImpl : public SurfaceJob {
  public:
   SurfaceJobImpl(PlannedSurface planned, std::shared_ptr<CostMeter> meter)
@@ -105,6 +127,9 @@ class SurfaceJobImpl : public SurfaceJob {
   const v1::SurfaceHeader& header() const override { return header_; }
   std::int64_t total() const override { return planned_.plan.tiles.total(); }
   std::int64_t first() const override { return planned_.plan.tiles.first_tile; }
+  double EstimatedSeconds() const override {
+    return meter_->Seconds(GeneratedSamples(planned_));
+  }
 
   absl::Status MakeTile(std::int64_t index, std::stop_token stop,
                         v1::StreamSurfaceResponse* message) const override {
@@ -202,29 +227,6 @@ class SurfaceJobImpl : public SurfaceJob {
   v1::SurfaceHeader header_;
 };
 
-// Samples that the tiles from first_tile on take, those before them in carried
-// rows included. Tiles of a column cost alike.
-double GeneratedSamples(const PlannedSurface& planned) {
-  const TilePlan& plan = planned.plan.tiles;
-  double samples = 0;
-  for (std::int64_t column = 0; column < plan.columns; ++column) {
-    const std::int64_t skipped =
-        plan.first_tile / plan.columns +
-        (column < plan.first_tile % plan.columns ? 1 : 0);
-    for (std::int64_t row : {std::int64_t{0}, plan.rows - 1}) {
-      const bool last = row == plan.rows - 1;
-      const std::int64_t tiles =
-          last ? (skipped < plan.rows ? 1 : 0)
-               : std::max<std::int64_t>(plan.rows - 1 - skipped, 0);
-      samples += static_cast<double>(tiles) *
-                 static_cast<double>(planned.surface->GeneratedSamples(
-                     planned.TileRequest(row * plan.columns + column)));
-      if (plan.rows == 1) break;
-    }
-  }
-  return samples;
-}
-
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const SurfaceJob>> SurfaceMaker::Open(
@@ -243,13 +245,13 @@ absl::StatusOr<v1::EstimateSurfaceResponse> SurfaceMaker::Estimate(
   for (const TileKind& kind : RemainingTiles(plan.tiles)) {
     samples += kind.count * kind.example.width * kind.example.height;
   }
-  const double generated = GeneratedSamples(*planned);
+  const std::int64_t generated = GeneratedSamples(*planned);
   v1::EstimateSurfaceResponse estimate;
   estimate.set_tiles(plan.tiles.total() - plan.tiles.first_tile);
   estimate.set_samples(samples);
   estimate.set_data_bytes(samples * plan.bytes_per_sample());
-  estimate.set_generated_samples(static_cast<std::int64_t>(generated));
-  estimate.set_cpu_seconds(generated * meter_->ns_per_point() * 1e-9);
+  estimate.set_generated_samples(generated);
+  estimate.set_cpu_seconds(meter_->Seconds(generated));
   // Two tiles in hand, and as much again while one is serialized.
   estimate.set_memory_bytes(3 * std::int64_t{plan.tiles.tile_size} *
                             plan.tiles.tile_size * plan.bytes_per_sample());

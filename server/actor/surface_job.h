@@ -26,6 +26,8 @@ class SurfaceJob {
   // Tiles of the request, and the index of the first one to send.
   virtual std::int64_t total() const = 0;
   virtual std::int64_t first() const = 0;
+  // As of TileJob (server/actor/actor.h).
+  virtual double EstimatedSeconds() const = 0;
   // Generates and encodes tile `index`, first() <= index < total(), into the
   // message's mesh_tile or height_tile.
   virtual absl::Status MakeTile(std::int64_t index, std::stop_token stop,

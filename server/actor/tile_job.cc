@@ -35,6 +35,9 @@ class TileJobImpl : public TileJob {
   const v1::StreamHeader& header() const override { return header_; }
   std::int64_t total() const override { return plan_.total(); }
   std::int64_t first() const override { return plan_.first_tile; }
+  double EstimatedSeconds() const override {
+    return meter_->Seconds(WorkOf(*prepared_->terrain, plan_).points);
+  }
 
   absl::Status MakeTile(std::int64_t index, std::stop_token stop,
                         core::TileScratch* scratch,
@@ -121,6 +124,18 @@ absl::Status TileJobImpl::MakeTile(std::int64_t index, std::stop_token stop,
 }
 
 }  // namespace
+
+TileWork WorkOf(const core::Terrain& terrain, const TilePlan& plan) {
+  TileWork work;
+  for (const TileKind& kind : RemainingTiles(plan)) {
+    const std::int64_t points =
+        terrain.GeneratedPoints({plan.level, plan.sampling, kind.example});
+    work.samples += kind.count * kind.example.width * kind.example.height;
+    work.points += kind.count * points;
+    work.largest = std::max(work.largest, points);
+  }
+  return work;
+}
 
 std::shared_ptr<const TileJob> MakeTileJob(
     std::shared_ptr<const PreparedTerrain> prepared, const TilePlan& plan,

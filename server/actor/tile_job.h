@@ -2,6 +2,7 @@
 #ifndef TERRANE_SERVER_ACTOR_TILE_JOB_H_
 #define TERRANE_SERVER_ACTOR_TILE_JOB_H_
 
+#include <cstdint>
 #include <memory>
 
 #include "server/actor/actor.h"
@@ -10,6 +11,15 @@
 #include "server/convert/request_plan.h"
 
 namespace terrane::server {
+
+// What the tiles of a plan are, from its first_tile on.
+struct TileWork {
+  std::int64_t samples = 0;
+  // Of the lattices that they are cut from.
+  std::int64_t points = 0;
+  std::int64_t largest = 0;  // of one tile
+};
+TileWork WorkOf(const core::Terrain& terrain, const TilePlan& plan);
 
 // `plan` was made for this terrain and has no violations. See TileJob
 // (server/actor/actor.h).

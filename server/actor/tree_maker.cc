@@ -150,8 +150,7 @@ absl::StatusOr<v1::EstimateTreeResponse> TreeMaker::Estimate(
   v1::EstimateTreeResponse response;
   response.set_segments_most(estimate.segments_most);
   response.set_data_bytes_most(estimate.bytes_most);
-  response.set_cpu_seconds_most(static_cast<double>(estimate.segments_most) *
-                                meter_->ns_per_point() * 1e-9);
+  response.set_cpu_seconds_most(meter_->Seconds(estimate.segments_most));
   // The queue; two messages in hand and the block that they come from.
   const std::int64_t block_rows =
       std::min(estimate.segments_most,

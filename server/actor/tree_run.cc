@@ -23,11 +23,16 @@ absl::Status PastTheEnd(const char* field, std::int64_t asked,
                                          "], got " + std::to_string(asked));
 }
 
+// What growing all of a tree takes, at most.
+double SecondsOf(const core::Tree& tree, const CostMeter& meter) {
+  return meter.Seconds(tree.estimate().segments_most);
+}
+
 class TreeRun : public HeadedRun<v1::StreamTreeResponse, v1::TreeHeader> {
  public:
   TreeRun(ChosenTree chosen, std::int64_t from_row,
           std::shared_ptr<CostMeter> meter)
-      : HeadedRun(std::move(chosen.header)),
+      : HeadedRun(std::move(chosen.header), SecondsOf(*chosen.tree, *meter)),
         generator_(std::move(chosen.tree), from_row, {}, std::move(meter)),
         from_row_(from_row) {}
 
@@ -54,7 +59,7 @@ class LeafRun : public HeadedRun<v1::StreamTreeLeavesResponse, v1::TreeHeader> {
  public:
   LeafRun(ChosenTree chosen, std::int64_t from_leaf,
           std::shared_ptr<CostMeter> meter)
-      : HeadedRun(std::move(chosen.header)),
+      : HeadedRun(std::move(chosen.header), SecondsOf(*chosen.tree, *meter)),
         tree_(chosen.tree),
         generator_(std::move(chosen.tree), 0,
                    LeafBlockSizes(*tree_->spec().leaves), std::move(meter)),
@@ -116,7 +121,7 @@ class TubeRun : public HeadedRun<v1::StreamTreeMeshResponse, v1::TreeHeader> {
   TubeRun(v1::TreeHeader header, std::shared_ptr<const core::Tree> tree,
           core::TreeMesher mesher, std::int64_t first_block,
           std::shared_ptr<CostMeter> meter)
-      : HeadedRun(std::move(header)),
+      : HeadedRun(std::move(header), SecondsOf(*tree, *meter)),
         generator_(std::move(tree), 0, {}, std::move(meter)),
         mesher_(std::move(mesher)),
         first_block_(first_block) {}

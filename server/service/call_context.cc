@@ -6,6 +6,8 @@
 #include <random>
 #include <string_view>
 
+#include "server/service/status.h"
+
 namespace terrane::server {
 namespace {
 
@@ -53,6 +55,22 @@ CallRecord BeginCall(const char* method, grpc::CallbackServerContext* context) {
   record.client = PeerHost(*context);
   context->AddInitialMetadata(kRequestIdKey, record.request_id);
   return record;
+}
+
+Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context) {
+  const auto deadline = context.deadline();
+  if (deadline == std::chrono::system_clock::time_point::max()) {
+    return std::nullopt;
+  }
+  return deadline - std::chrono::system_clock::now();
+}
+
+void AddPushback(const absl::Status& status,
+                 grpc::CallbackServerContext* context) {
+  if (const auto delay = RetryDelayOf(status)) {
+    context->AddTrailingMetadata("grpc-retry-pushback-ms",
+                                 std::to_string(delay->count()));
+  }
 }
 
 absl::Status CancelStatus(const grpc::CallbackServerContext& context) {

@@ -7,8 +7,10 @@
 #include <memory>
 
 #include "server/actor/actor.h"
+#include "server/service/admission.h"
 #include "server/service/buffer_pool.h"
 #include "server/service/call_log.h"
+#include "server/service/stall_watch.h"
 #include "server/service/stream_gate.h"
 #include "server/service/worker_pool.h"
 
@@ -18,7 +20,9 @@ namespace terrane::server {
 struct ServiceParts {
   Actor* actor = nullptr;
   WorkerPool* workers = nullptr;
+  Admission* admission = nullptr;
   StreamGate* gate = nullptr;
+  StallWatch* stalls = nullptr;
   CallLog* log = nullptr;
   std::shared_ptr<BufferPool> buffers;
 };
@@ -27,6 +31,13 @@ struct ServiceParts {
 // digits, '.', '_', '-'; at most 64), else a new one; the client gets it back
 // in the initial metadata.
 CallRecord BeginCall(const char* method, grpc::CallbackServerContext* context);
+
+// The time that a call has left.
+Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context);
+
+// Tells the client's library when to come back, if the status says so.
+void AddPushback(const absl::Status& status,
+                 grpc::CallbackServerContext* context);
 
 // The status of a call that gRPC cancelled: by the client, or by its deadline.
 absl::Status CancelStatus(const grpc::CallbackServerContext& context);

@@ -102,6 +102,7 @@ void CallLog::Write(const CallRecord& record) {
         .Add("samples", record.samples)
         .Add("bytes", record.bytes);
   }
+  if (record.refused != nullptr) line.Add("refused", record.refused);
   if (const auto reason = ReasonOf(record.status)) {
     line.Add("reason", reason->reason);
   }

@@ -33,6 +33,10 @@ struct CallRecord {
   std::int64_t tiles = 0;
   std::int64_t samples = 0;
   std::int64_t bytes = 0;
+  // What it was expected to take on a worker, in seconds; 0: not priced.
+  double estimated_seconds = 0;
+  // Why it was refused, when it was: "deadline", "streams".
+  const char* refused = nullptr;
   std::chrono::nanoseconds queued{0};     // waiting for a worker
   std::chrono::nanoseconds generated{0};  // on a worker
   absl::Status status;

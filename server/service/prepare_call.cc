@@ -22,7 +22,13 @@ grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* PrepareCall::Start(
     std::lock_guard lock(call->mutex_);
     call->SetTimer();
   }
-  parts.workers->Submit([call](core::TileScratch*) { call->Run(); });
+  // Minutes, perhaps: batch work, whose end nobody can tell before it began.
+  Work share;
+  share.work_class = WorkClass::kBatch;
+  share.client = call->record_.client;
+  share.ticket = parts.workers->NextTicket();
+  parts.workers->Submit(std::move(share),
+                        [call](core::TileScratch*) { call->Run(); });
   return call.get();
 }
 

@@ -44,6 +44,8 @@ class RunSource : public StreamSource {
     return Make(std::move(stop));
   }
 
+  double EstimatedSeconds() const override { return run_->EstimatedSeconds(); }
+
   bool AllMade() const override { return run_->Done(); }
 
   absl::StatusOr<grpc::ByteBuffer> Next(std::stop_token stop,

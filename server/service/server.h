@@ -31,6 +31,10 @@ struct ServerOptions {
   std::string listen = "127.0.0.1:50051";  // port 0 takes a free one
   Limits limits;
   int workers = 1;
+  // A call without a deadline is refused when it would not begin in this time.
+  std::chrono::seconds patience{60};
+  // A stream whose reader takes nothing for this time is ended.
+  std::chrono::milliseconds stream_idle{60'000};
   bool reflection = false;
 };
 
@@ -60,6 +64,8 @@ class Server {
 
   StreamGate gate_;
   WorkerPool workers_;
+  Admission admission_;
+  StallWatch stalls_;
   ServiceParts parts_;
   TerrainServiceImpl terrain_service_;
   SurfaceServiceImpl surface_service_;

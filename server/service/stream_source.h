@@ -24,6 +24,9 @@ class StreamSource {
   // the first message.
   virtual absl::StatusOr<grpc::ByteBuffer> Open(std::stop_token stop,
                                                 CallRecord* record) = 0;
+  // What all messages take on one core of this machine, as such work did so
+  // far. After Open.
+  virtual double EstimatedSeconds() const = 0;
   // Whether every message was made. After Open.
   virtual bool AllMade() const = 0;
   // The next message.

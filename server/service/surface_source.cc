@@ -45,6 +45,8 @@ class SurfaceSource : public StreamSource {
     return Serialized(message);
   }
 
+  double EstimatedSeconds() const override { return job_->EstimatedSeconds(); }
+
   bool AllMade() const override { return next_tile_ == job_->total(); }
 
   absl::StatusOr<grpc::ByteBuffer> Next(std::stop_token stop,

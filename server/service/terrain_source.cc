@@ -32,6 +32,8 @@ class TerrainSource : public StreamSource {
     return HeaderMessage(job_->header());
   }
 
+  double EstimatedSeconds() const override { return job_->EstimatedSeconds(); }
+
   bool AllMade() const override { return next_tile_ == job_->total(); }
 
   absl::StatusOr<grpc::ByteBuffer> Next(std::stop_token stop,

@@ -1,5 +1,6 @@
 #include "server/service/tile_stream.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/base/violations.h"
@@ -8,9 +9,15 @@
 namespace terrane::server {
 namespace {
 
-// How long a refused stream should wait: about what a stream of a few hundred
-// tiles takes.
+// How long a stream that finds the line full should wait: about what a stream
+// of a few hundred tiles takes.
 constexpr std::chrono::milliseconds kRetryDelay{1000};
+// What a stream that has taken longer than expected is thought to lack.
+constexpr double kLeastSeconds = 1e-3;
+
+double Seconds(std::chrono::nanoseconds duration) {
+  return std::chrono::duration<double>(duration).count();
+}
 
 }  // namespace
 
@@ -21,6 +28,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* TileStream::Start(
   std::shared_ptr<TileStream> stream(
       new TileStream(parts, method, context, std::move(source)));
   stream->self_ = stream;
+  parts.stalls->Add(stream);
   stream->EnterGate();
   return stream.get();
 }
@@ -30,30 +38,80 @@ TileStream::TileStream(const ServiceParts& parts, const char* method,
                        std::unique_ptr<StreamSource> source)
     : parts_(parts),
       context_(context),
+      call_ticket_(parts.workers->NextTicket()),
       source_(std::move(source)),
       record_(BeginCall(method, context)) {}
 
 void TileStream::EnterGate() {
-  // Locked, so that the task cannot end the stream before the ticket is kept.
-  std::unique_lock lock(mutex_);
-  queued_ = true;
-  ticket_ = parts_.gate->Enter([stream = self_] { Submit(stream); });
-  if (ticket_.has_value()) return;
-  queued_ = false;
+  // Its price is not known yet; its client's calls before it are.
+  Work arriving = NextWork();
+  arriving.work_class = WorkClass::kInteractive;
   const absl::Status refusal =
+      parts_.admission->Admit(arriving, TimeLeft(*context_));
+  if (!refusal.ok()) return Refuse("deadline", refusal);
+  const absl::Status full =
       RetryLaterError("too many streams are waiting; try again", kRetryDelay);
-  context_->AddTrailingMetadata("grpc-retry-pushback-ms",
-                                std::to_string(kRetryDelay.count()));
-  EndWith(refusal);
+  {
+    // Locked, so that the task cannot end the stream before the ticket is kept.
+    std::lock_guard lock(mutex_);
+    queued_ = true;
+    ticket_ = parts_.gate->Enter(
+        {record_.client, [stream = self_] { Submit(stream); },
+         [stream = self_, full] { stream->Refuse("streams", full); }});
+    if (ticket_.has_value()) return;
+  }
+  Refuse("streams", full);
+}
+
+void TileStream::Refuse(const char* reason, const absl::Status& refusal) {
+  std::unique_lock lock(mutex_);
+  queued_ = false;
+  if (!end_.has_value()) {
+    record_.refused = reason;
+    AddPushback(refusal, context_);
+    EndWith(refusal);
+  }
   Advance(std::move(lock));
+}
+
+Work TileStream::NextWork() const {
+  Work work;
+  work.client = record_.client;
+  work.ticket = call_ticket_;
+  if (!opened_) {
+    work.work_class = WorkClass::kOpening;
+    return work;
+  }
+  work.work_class = Admission::ClassOf(record_.estimated_seconds);
+  // Batch streams of a client take turns, interactive ones come one by one.
+  if (work.work_class == WorkClass::kBatch) {
+    work.ticket = parts_.workers->NextTicket();
+  }
+  work.seconds =
+      std::max(record_.estimated_seconds - SpentSeconds(), kLeastSeconds);
+  return work;
 }
 
 void TileStream::Submit(std::shared_ptr<TileStream> stream) {
   WorkerPool* const workers = stream->parts_.workers;
-  workers->Submit([stream = std::move(stream),
-                   submitted = Clock::now()](core::TileScratch* scratch) {
-    stream->RunTask(submitted, scratch);
-  });
+  Work work = stream->NextWork();
+  workers->Submit(
+      std::move(work),
+      [stream = std::move(stream), submitted = Clock::now()](
+          core::TileScratch* scratch) { stream->RunTask(submitted, scratch); });
+}
+
+double TileStream::SpentSeconds() const {
+  return Seconds(record_.generated - opening_time_);
+}
+
+absl::Status TileStream::Price() {
+  raw_seconds_ = source_->EstimatedSeconds();
+  record_.estimated_seconds =
+      parts_.admission->prices().Price(record_.method, raw_seconds_);
+  opening_time_ = record_.generated;
+  opened_ = true;
+  return parts_.admission->Admit(NextWork(), TimeLeft(*context_));
 }
 
 void TileStream::RunTask(Clock::time_point submitted,
@@ -72,8 +130,13 @@ void TileStream::RunTask(Clock::time_point submitted,
   running_ = false;
   record_.queued += start - submitted;
   record_.generated += Clock::now() - start;
-  if (made.ok()) {
-    opened_ = true;
+  const absl::Status refusal =
+      made.ok() && !opened_ ? Price() : absl::OkStatus();
+  if (!refusal.ok()) {
+    record_.refused = "deadline";
+    AddPushback(refusal, context_);
+    EndWith(refusal);
+  } else if (made.ok()) {
     ahead_ = *std::move(made);
     all_made_ = source_->AllMade();
   } else {
@@ -100,13 +163,18 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
     outgoing_ = *std::move(ahead_);
     ahead_.reset();
     writing_ = true;
+    write_began_ = Clock::now();
   }
   const bool generate = MayGenerate() && opened_;
   if (generate) queued_ = true;
   if (all_made_ && !ahead_.has_value() && !writing_) EndWith(absl::OkStatus());
-  finished_ = end_.has_value() && !writing_ && !running_;
+  finished_ = end_.has_value() && !writing_ && !running_ && !cancelling_;
   const bool finish = finished_;
   if (finish) record_.status = *end_;
+  if (finish && record_.status.ok()) {
+    parts_.admission->prices().Learn(record_.method, raw_seconds_,
+                                     SpentSeconds());
+  }
   // Once unlocked the stream can end at any time, and then lets go of itself.
   const std::shared_ptr<TileStream> keep = self_;
   lock.unlock();
@@ -126,6 +194,19 @@ void TileStream::OnCancel() {
   stop_.request_stop();
   std::unique_lock lock(mutex_);
   EndWith(CancelStatus(*context_));
+  Advance(std::move(lock));
+}
+
+void TileStream::EndIfStalledSince(Clock::time_point moment) {
+  {
+    std::lock_guard lock(mutex_);
+    if (!writing_ || write_began_ > moment || end_.has_value()) return;
+    EndWith(absl::AbortedError("the reader takes no message any more"));
+    cancelling_ = true;
+  }
+  context_->TryCancel();  // the write fails; reactions may run in here
+  std::unique_lock lock(mutex_);
+  cancelling_ = false;
   Advance(std::move(lock));
 }
 

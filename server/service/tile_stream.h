@@ -30,7 +30,8 @@
 
 namespace terrane::server {
 
-class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
+                         public Stallable {
  public:
   static grpc::ServerWriteReactor<grpc::ByteBuffer>* Start(
       const ServiceParts& parts, const char* method,
@@ -40,6 +41,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
   void OnDone() override;
+  void EndIfStalledSince(std::chrono::steady_clock::time_point moment) override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -49,10 +51,18 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
              std::unique_ptr<StreamSource> source);
 
   void EnterGate();
+  // Refuses the stream, unless it has ended.
+  void Refuse(const char* reason, const absl::Status& refusal);
   // Queues the next task: opening the source first, then a message each. The
   // stream may end at any time from here on, so the task brings its own share
   // of it.
   static void Submit(std::shared_ptr<TileStream> stream);
+  // What the next task is a part of. Under the mutex, or before the first one.
+  Work NextWork() const;
+  // On workers, for the messages behind the first one.
+  double SpentSeconds() const;
+  // Prices the stream, whose source is open; OK when it can end in time.
+  absl::Status Price();
   void RunTask(Clock::time_point submitted, core::TileScratch* scratch);
   // Ends the stream with a status, unless it has one.
   void EndWith(const absl::Status& status);
@@ -64,6 +74,9 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   grpc::CallbackServerContext* const context_;
   std::stop_source stop_;
   std::shared_ptr<TileStream> self_;
+
+  // Its place among its client's calls.
+  const std::uint64_t call_ticket_;
 
   // Of the task at work, one at a time.
   const std::unique_ptr<StreamSource> source_;
@@ -78,7 +91,11 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   bool queued_ = false;                    // a task waits for a worker
   bool running_ = false;                   // a worker is at it
   bool writing_ = false;
+  Clock::time_point write_began_;
+  bool cancelling_ = false;  // the watch ends it, and needs the context
   bool opened_ = false;
+  std::chrono::nanoseconds opening_time_{0};  // on a worker
+  double raw_seconds_ = 0;                    // what the source estimates
   bool all_made_ = false;
   std::optional<absl::Status> end_;  // set early by a failure or OnCancel
   bool finished_ = false;

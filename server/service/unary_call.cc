@@ -5,12 +5,36 @@ namespace terrane::server {
 grpc::ServerUnaryReactor* UnaryCall::Start(const ServiceParts& parts,
                                            const char* method,
                                            grpc::CallbackServerContext* context,
-                                           Work work) {
+                                           Handler handler) {
   std::shared_ptr<UnaryCall> call(
-      new UnaryCall(parts, method, context, std::move(work)));
+      new UnaryCall(parts, method, context, std::move(handler)));
   call->self_ = call;
-  parts.workers->Submit([call](core::TileScratch*) { call->Run(); });
+  CallRecord& record = call->record_;
+  record.estimated_seconds = parts.admission->prices().Price(method, 0);
+  Work share;
+  share.client = record.client;
+  share.ticket = parts.workers->NextTicket();
+  share.seconds = record.estimated_seconds;
+  const absl::Status refusal =
+      parts.admission->Admit(share, TimeLeft(*context));
+  if (!refusal.ok()) {
+    call->Refuse(refusal);
+    return call.get();
+  }
+  parts.workers->Submit(std::move(share),
+                        [call](core::TileScratch*) { call->Run(); });
   return call.get();
+}
+
+void UnaryCall::Refuse(const absl::Status& refusal) {
+  {
+    std::lock_guard lock(mutex_);
+    if (state_ != State::kQueued) return;  // cancelled meanwhile
+    state_ = State::kFinished;
+  }
+  record_.refused = "deadline";
+  AddPushback(refusal, context_);
+  End(refusal);
 }
 
 void UnaryCall::Run() {
@@ -21,11 +45,16 @@ void UnaryCall::Run() {
     state_ = State::kRunning;
   }
   record_.queued = start - begin_;
-  absl::Status status = work_(stop_.get_token(), &record_);
+  absl::Status status = handler_(stop_.get_token(), &record_);
   record_.generated = std::chrono::steady_clock::now() - start;
   {
     std::lock_guard lock(mutex_);
     state_ = State::kFinished;
+  }
+  if (status.ok()) {
+    parts_.admission->prices().Learn(
+        record_.method, 0,
+        std::chrono::duration<double>(record_.generated).count());
   }
   // The core knows that it was stopped, the call knows why.
   End(absl::IsCancelled(status) ? CancelStatus(*context_) : status);

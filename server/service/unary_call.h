@@ -27,12 +27,12 @@ namespace terrane::server {
 class UnaryCall final : public grpc::ServerUnaryReactor {
  public:
   // Fills in the response that gRPC gave the handler, and the record.
-  using Work = std::function<absl::Status(std::stop_token, CallRecord*)>;
+  using Handler = std::function<absl::Status(std::stop_token, CallRecord*)>;
 
   static grpc::ServerUnaryReactor* Start(const ServiceParts& parts,
                                          const char* method,
                                          grpc::CallbackServerContext* context,
-                                         Work work);
+                                         Handler handler);
 
   void OnCancel() override;
   void OnDone() override;
@@ -41,18 +41,19 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
   enum class State { kQueued, kRunning, kFinished };
 
   UnaryCall(const ServiceParts& parts, const char* method,
-            grpc::CallbackServerContext* context, Work work)
+            grpc::CallbackServerContext* context, Handler handler)
       : parts_(parts),
         context_(context),
-        work_(std::move(work)),
+        handler_(std::move(handler)),
         record_(BeginCall(method, context)) {}
 
+  void Refuse(const absl::Status& refusal);
   void Run();
   void End(absl::Status status);
 
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
-  const Work work_;
+  const Handler handler_;
   const std::chrono::steady_clock::time_point begin_ =
       std::chrono::steady_clock::now();
   std::stop_source stop_;
@@ -64,7 +65,7 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
 
 // Work that makes its response from a StatusOr.
 template <typename Response, typename Make>
-UnaryCall::Work Answer(Response* response, Make make) {
+UnaryCall::Handler Answer(Response* response, Make make) {
   return [response, make = std::move(make)](std::stop_token stop,
                                             CallRecord* record) {
     absl::StatusOr<Response> made = make(std::move(stop));

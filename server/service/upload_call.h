@@ -30,12 +30,17 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
         context_(context),
         response_(response),
         record_(BeginCall(method, context)),
+        ticket_(parts.workers->NextTicket()),
         upload_(std::move(upload)) {
     this->StartRead(&part_);
   }
 
   void OnReadDone(bool ok) override {
+    Work share;
+    share.client = record_.client;
+    share.ticket = ticket_;
     parts_.workers->Submit(
+        std::move(share),
         [this, ok, submitted = Clock::now()](core::TileScratch*) {
           const Clock::time_point start = Clock::now();
           record_.queued += start - submitted;
@@ -84,6 +89,7 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
   grpc::CallbackServerContext* const context_;
   Response* const response_;
   CallRecord record_;
+  const std::uint64_t ticket_;
   std::unique_ptr<Upload<Request, Response>> upload_;
   Request part_;
 };

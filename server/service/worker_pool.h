@@ -1,45 +1,60 @@
 // WorkerPool: the threads that generate.
 //
 // gRPC's threads only hand work over; everything that costs more than a few
-// microseconds runs here, on as many threads as the machine gives. Tasks run
-// first in, first out. A task is one tile (or one unary call), after which its
-// stream queues again: streams take turns tile by tile.
+// microseconds runs here, on as many threads as the machine gives. A task is
+// one message of a stream (or one unary call), after which its stream queues
+// again; whose turn it is says FairQueue.
 //
 // Each thread owns a TileScratch, so working memory is that of `threads` tiles.
-// Threads: Submit from any thread. The destructor runs what is queued and
-// joins.
+// Threads: any. The destructor runs what is queued and joins.
 #ifndef TERRANE_SERVER_SERVICE_WORKER_POOL_H_
 #define TERRANE_SERVER_SERVICE_WORKER_POOL_H_
 
+#include <atomic>
 #include <condition_variable>
-#include <deque>
-#include <functional>
+#include <cstdint>
 #include <mutex>
 #include <thread>
 #include <vector>
 
 #include "core/terrain/terrain.h"
+#include "server/service/fair_queue.h"
 
 namespace terrane::server {
 
 class WorkerPool {
  public:
-  using Task = std::function<void(core::TileScratch*)>;
+  using Task = FairQueue::Task;
+
+  // What there is to do.
+  struct Load {
+    int workers = 0;
+    int busy = 0;
+    double interactive_seconds = 0;
+    double batch_seconds = 0;
+  };
 
   explicit WorkerPool(int threads);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  void Submit(Task task);
+  // The place of a new call in the order of calls.
+  std::uint64_t NextTicket() { return ++last_ticket_; }
+  void Submit(Work work, Task task);
+  // How long from now `work` would take to end.
+  double ExpectedSeconds(const Work& work) const;
+  Load load() const;
 
  private:
   void Run();
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::deque<Task> tasks_;
+  FairQueue queue_;
+  int busy_ = 0;
   bool stopping_ = false;
+  std::atomic<std::uint64_t> last_ticket_ = 0;
   std::vector<std::thread> threads_;
 };
 

@@ -19,6 +19,8 @@ namespace terrane::server {
 // What the tiles of a FakeActor did, and how they behave.
 struct FakeTiles {
   std::size_t tile_bytes = 1024;
+  // What a stream is estimated to take.
+  std::atomic<double> seconds = 0;
   // A tile that is not let through is at work until its stop token is set.
   std::atomic<bool> hold = false;
   // The same of the preparation before them.
@@ -61,6 +63,7 @@ class FakeJob : public TileJob {
   const v1::StreamHeader& header() const override { return header_; }
   std::int64_t total() const override { return total_; }
   std::int64_t first() const override { return first_; }
+  double EstimatedSeconds() const override { return tiles_->seconds; }
   absl::Status MakeTile(std::int64_t index, std::stop_token stop,
                         core::TileScratch*,
                         v1::HeightTile* tile) const override {

@@ -203,6 +203,67 @@ TEST(TileStreamTest, BeyondTheLineStreamsAreRefusedWithADelay) {
   EXPECT_EQ(served_streams, 5);
 }
 
+TEST(TileStreamTest, WhatCannotEndInTimeIsRefusedBeforeATileIsMade) {
+  FakeActor actor;
+  actor.tiles().seconds = 100;
+  Served served(&actor);
+  const auto ask = [&served](std::chrono::seconds deadline) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + deadline);
+    const auto reader = served.terrain->StreamTiles(&context, Tiles(3));
+    for (v1::StreamTilesResponse message; reader->Read(&message);) {
+    }
+    return reader->Finish();
+  };
+  const grpc::Status status = ask(std::chrono::seconds(20));
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(status.error_message(), HasSubstr("expected to take 100.00 s"));
+  v1::ErrorStatus details;
+  ASSERT_TRUE(details.ParseFromString(status.error_details()));
+  EXPECT_EQ(details.details(0).type_url(),
+            "type.googleapis.com/google.rpc.RetryInfo");
+  EXPECT_EQ(actor.tiles().started, 0);
+  EXPECT_TRUE(ask(std::chrono::seconds(500)).ok());
+  EXPECT_THAT(served.StopAndReadLog(), HasSubstr("\"refused\":\"deadline\""));
+}
+
+TEST(TileStreamTest, AReaderThatTakesNothingIsCut) {
+  FakeActor actor;
+  actor.tiles().tile_bytes = 8 << 20;
+  ServerOptions options;
+  options.stream_idle = std::chrono::milliseconds(300);
+  Served served(&actor, options);
+  grpc::ClientContext context;
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(100));
+  v1::StreamTilesResponse message;
+  EXPECT_TRUE(reader->Read(&message));
+  ASSERT_TRUE(Eventually([&] { return actor.tiles().started >= 2; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  const std::int64_t started = actor.tiles().started;
+  while (reader->Read(&message)) {
+  }
+  EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_EQ(actor.tiles().started, started);
+  EXPECT_THAT(served.StopAndReadLog(), HasSubstr("\"code\":\"ABORTED\""));
+}
+
+TEST(TileStreamTest, AReaderThatIsOnlySlowIsNot) {
+  FakeActor actor;
+  actor.tiles().tile_bytes = 4 << 20;
+  ServerOptions options;
+  options.stream_idle = std::chrono::milliseconds(1500);
+  Served served(&actor, options);
+  grpc::ClientContext context;
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(10));
+  v1::StreamTilesResponse message;
+  int messages = 0;
+  for (; reader->Read(&message); ++messages) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  EXPECT_EQ(messages, 11);
+  EXPECT_TRUE(reader->Finish().ok());
+}
+
 TEST(TileStreamTest, DrainLetsARunningStreamEnd) {
   FakeActor actor;
   actor.tiles().hold = true;

@@ -1,17 +1,19 @@
-// The worker pool, the gate in front of it, the CPU quota and the buffer pool.
+// The worker pool, the gate and the admission in front of it, the CPU quota and
+// the buffer pool.
 #include "server/service/worker_pool.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <latch>
 #include <set>
 
+#include "server/service/admission.h"
 #include "server/service/buffer_pool.h"
 #include "server/service/cpu_quota.h"
+#include "server/service/status.h"
 #include "server/service/stream_gate.h"
 
 namespace terrane::server {
@@ -25,7 +27,7 @@ TEST(WorkerPoolTest, OneThreadRunsTasksInOrder) {
   {
     WorkerPool pool(1);
     for (int i = 0; i < 5; ++i) {
-      pool.Submit([&order, i](core::TileScratch*) { order.push_back(i); });
+      pool.Submit({}, [&order, i](core::TileScratch*) { order.push_back(i); });
     }
   }  // the destructor runs what is queued
   EXPECT_THAT(order, ElementsAre(0, 1, 2, 3, 4));
@@ -39,7 +41,7 @@ TEST(WorkerPoolTest, ThreadsWorkAtTheSameTimeWithTheirOwnScratch) {
   {
     WorkerPool pool(kThreads);
     for (int i = 0; i < kThreads; ++i) {
-      pool.Submit([&](core::TileScratch* scratch) {
+      pool.Submit({}, [&](core::TileScratch* scratch) {
         all_at_work.arrive_and_wait();
         std::lock_guard lock(mutex);
         scratches.insert(scratch);
@@ -49,23 +51,108 @@ TEST(WorkerPoolTest, ThreadsWorkAtTheSameTimeWithTheirOwnScratch) {
   EXPECT_EQ(scratches.size(), std::size_t{kThreads});
 }
 
-TEST(StreamGateTest, StreamsStartInTurnAndTheRestIsRefused) {
-  StreamGate gate(1, 2);
-  std::vector<int> started;
-  const auto enter = [&](int i) {
-    return gate.Enter([&started, i] { started.push_back(i); });
+TEST(WorkerPoolTest, TellsWhatThereIsToDo) {
+  WorkerPool pool(1);
+  std::latch at_work(1);
+  std::latch go(1);
+  pool.Submit({.client = "a", .seconds = 2}, [&](core::TileScratch*) {
+    at_work.count_down();
+    go.wait();
+  });
+  at_work.wait();
+  pool.Submit({.client = "a", .seconds = 3}, [](core::TileScratch*) {});
+  pool.Submit({.work_class = WorkClass::kBatch, .client = "b", .seconds = 7},
+              [](core::TileScratch*) {});
+  const WorkerPool::Load load = pool.load();
+  EXPECT_EQ(load.workers, 1);
+  EXPECT_EQ(load.busy, 1);
+  EXPECT_EQ(load.interactive_seconds, 5);
+  EXPECT_EQ(load.batch_seconds, 7);
+  go.count_down();
+}
+
+// Enters a gate and keeps what became of it.
+class GateTest : public ::testing::Test {
+ protected:
+  std::optional<StreamGate::Ticket> Enter(const std::string& client, int i) {
+    return gate_.Enter({client, [this, i] { started_.push_back(i); },
+                        [this, i] { refused_.push_back(i); }});
+  }
+
+  StreamGate gate_{1, 3};
+  std::vector<int> started_;
+  std::vector<int> refused_;
+};
+
+TEST_F(GateTest, StreamsOfAClientStartInTurnAndTheRestIsRefused) {
+  const auto first = Enter("a", 1);
+  const auto second = Enter("a", 2);
+  const auto third = Enter("a", 3);
+  Enter("a", 4);
+  EXPECT_FALSE(Enter("a", 5).has_value());
+  EXPECT_THAT(started_, ElementsAre(1));
+  gate_.Leave(*second);  // gave up in the line
+  gate_.Leave(*first);
+  EXPECT_THAT(started_, ElementsAre(1, 3));
+  gate_.Leave(*third);
+  EXPECT_THAT(started_, ElementsAre(1, 3, 4));
+  EXPECT_THAT(refused_, IsEmpty());
+}
+
+TEST_F(GateTest, WhoHasFewestOpenComesNext) {
+  StreamGate gate(2, 8);
+  const auto enter = [&](const std::string& client, int i) {
+    return gate.Enter({client, [this, i] { started_.push_back(i); }, [] {}});
   };
-  const auto first = enter(1);
-  const auto second = enter(2);
-  const auto third = enter(3);
-  EXPECT_FALSE(enter(4).has_value());
-  EXPECT_THAT(started, ElementsAre(1));
-  gate.Leave(*second);  // gave up in the line
+  const auto first = enter("greedy", 1);
+  enter("greedy", 2);
+  enter("greedy", 3);
+  enter("polite", 4);
   gate.Leave(*first);
-  EXPECT_THAT(started, ElementsAre(1, 3));
-  gate.Leave(*third);
-  enter(5);
-  EXPECT_THAT(started, ElementsAre(1, 3, 5));
+  EXPECT_THAT(started_, ElementsAre(1, 2, 4));
+}
+
+TEST_F(GateTest, WhoHasMostInAFullLineLosesTheLastOne) {
+  Enter("greedy", 1);
+  Enter("greedy", 2);
+  const auto third = Enter("greedy", 3);
+  Enter("greedy", 4);
+  EXPECT_TRUE(Enter("polite", 5).has_value());
+  EXPECT_THAT(refused_, ElementsAre(4));
+  EXPECT_TRUE(Enter("other", 6).has_value());
+  EXPECT_THAT(refused_, ElementsAre(4, 3));
+  gate_.Leave(*third);  // refused: nothing more happens
+  // All alike: the newcomer goes.
+  EXPECT_FALSE(Enter("another", 7).has_value());
+  EXPECT_THAT(started_, ElementsAre(1));
+}
+
+TEST(AdmissionTest, IsByTheExpectedFinish) {
+  WorkerPool pool(1);
+  Admission admission(&pool, std::chrono::seconds(10));
+  std::latch at_work(1);
+  std::latch go(1);
+  pool.Submit({.client = "a", .seconds = 8}, [&](core::TileScratch*) {
+    at_work.count_down();
+    go.wait();
+  });
+  at_work.wait();
+  const auto left = [](double seconds) {
+    return std::chrono::duration<double>(seconds);
+  };
+  // Behind its own eight seconds; others share.
+  EXPECT_TRUE(admission.Admit({.client = "a", .seconds = 1}, left(12)).ok());
+  EXPECT_TRUE(admission.Admit({.client = "b", .seconds = 1}, left(3)).ok());
+  EXPECT_TRUE(admission.Admit({.client = "a", .seconds = 1}, {}).ok());
+  const absl::Status refused =
+      admission.Admit({.client = "a", .seconds = 1}, left(10));
+  EXPECT_TRUE(absl::IsResourceExhausted(refused));
+  EXPECT_EQ(RetryDelayOf(refused), std::chrono::milliseconds(1000));
+  pool.Submit({.client = "a", .seconds = 3}, [](core::TileScratch*) {});
+  EXPECT_FALSE(admission.Admit({.client = "a", .seconds = 1}, {}).ok());
+  EXPECT_EQ(Admission::ClassOf(0.5), WorkClass::kInteractive);
+  EXPECT_EQ(Admission::ClassOf(2), WorkClass::kBatch);
+  go.count_down();
 }
 
 class CpuQuotaTest : public ::testing::Test {

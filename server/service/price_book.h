@@ -1,0 +1,56 @@
+// PriceBook: what calls cost on this machine, learnt from those that ended.
+//
+// Generators estimate a stream from what their units took so far (CostMeter);
+// what a stream really took, its messages included, corrects that by method.
+// Calls without an estimate are priced at the average of their method.
+// Threads: any.
+#ifndef TERRANE_SERVER_SERVICE_PRICE_BOOK_H_
+#define TERRANE_SERVER_SERVICE_PRICE_BOOK_H_
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <string_view>
+
+namespace terrane::server {
+
+class PriceBook {
+ public:
+  // Seconds of one worker; `estimated` is 0 where there is none. `method` lives
+  // as long as the program.
+  double Price(std::string_view method, double estimated) const {
+    std::lock_guard lock(mutex_);
+    const auto found = entries_.find(method);
+    const Entry entry = found == entries_.end() ? Entry() : found->second;
+    return estimated > 0 ? estimated * entry.ratio : entry.seconds;
+  }
+
+  // A call that came to its end took `spent`.
+  void Learn(std::string_view method, double estimated, double spent) {
+    std::lock_guard lock(mutex_);
+    Entry& entry = entries_[method];
+    entry.seconds += kWeight * (spent - entry.seconds);
+    if (estimated <= 0) return;
+    const double ratio =
+        std::clamp(spent / estimated, 1 / kMostRatio, kMostRatio);
+    entry.ratio += kWeight * (ratio - entry.ratio);
+  }
+
+ private:
+  // Weight of the newest call in the averages.
+  static constexpr double kWeight = 1.0 / 16;
+  // One strange call moves a price by this much, at most.
+  static constexpr double kMostRatio = 16;
+
+  struct Entry {
+    double ratio = 1;       // of what was spent to what was estimated
+    double seconds = 1e-3;  // of a call
+  };
+
+  mutable std::mutex mutex_;
+  std::map<std::string_view, Entry> entries_;
+};
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_SERVICE_PRICE_BOOK_H_

@@ -1,0 +1,192 @@
+// Whose turn it is, and when a call would end, on a simulated worker.
+#include "server/service/fair_queue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "server/service/price_book.h"
+
+namespace terrane::server {
+namespace {
+
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+
+Work Of(const std::string& client, double seconds,
+        WorkClass work_class = WorkClass::kInteractive,
+        std::uint64_t ticket = 0) {
+  return {work_class, client, ticket, seconds};
+}
+
+void Push(FairQueue* queue, const Work& work, int count = 1) {
+  for (int k = 0; k < count; ++k) queue->Push(work, {});
+}
+
+// One worker takes `count` tasks, which take what they said; who was served.
+std::vector<std::string> Serve(FairQueue* queue, int count) {
+  std::vector<std::string> served;
+  for (int k = 0; k < count; ++k) {
+    const FairQueue::Taken taken = queue->Pop();
+    queue->Finish(taken.work, taken.work.seconds);
+    served.push_back(taken.work.client);
+  }
+  return served;
+}
+
+std::map<std::string, int> Count(const std::vector<std::string>& served) {
+  std::map<std::string, int> counts;
+  for (const std::string& client : served) ++counts[client];
+  return counts;
+}
+
+TEST(FairQueueTest, ClientsTakeTurnsWhateverTheyQueued) {
+  FairQueue queue;
+  Push(&queue, Of("greedy", 1), 100);
+  Push(&queue, Of("polite", 1), 3);
+  EXPECT_EQ(Count(Serve(&queue, 6))["polite"], 3);
+  Serve(&queue, 97);
+  EXPECT_TRUE(queue.empty());
+  EXPECT_EQ(queue.BacklogSeconds(WorkClass::kInteractive), 0);
+}
+
+TEST(FairQueueTest, TimeIsSharedNotTasks) {
+  FairQueue queue;
+  Push(&queue, Of("slow", 4), 50);
+  Push(&queue, Of("quick", 1), 200);
+  const auto counts = Count(Serve(&queue, 100));
+  EXPECT_NEAR(counts.at("quick") / static_cast<double>(counts.at("slow")), 4,
+              0.2);
+}
+
+TEST(FairQueueTest, WhatATaskReallyTookIsCharged) {
+  FairQueue queue;
+  // Says 1 ms and takes a second.
+  Push(&queue, Of("liar", 1e-3), 50);
+  Push(&queue, Of("honest", 1), 50);
+  std::vector<std::string> served;
+  for (int k = 0; k < 40; ++k) {
+    const FairQueue::Taken taken = queue.Pop();
+    queue.Finish(taken.work, 1);
+    served.push_back(taken.work.client);
+  }
+  EXPECT_EQ(Count(served)["honest"], 20);
+}
+
+TEST(FairQueueTest, WhoWasAwayHasNoCreditForIt) {
+  FairQueue queue;
+  Push(&queue, Of("a", 1), 100);
+  Serve(&queue, 50);
+  Push(&queue, Of("b", 1), 50);
+  EXPECT_EQ(Count(Serve(&queue, 20))["b"], 10);
+}
+
+TEST(FairQueueTest, WhoComesBackEachTimeKeepsItsDebt) {
+  // A stream has one task at a time: it leaves and comes back.
+  FairQueue queue;
+  Push(&queue, Of("many", 1), 100);
+  int served = 0;
+  Push(&queue, Of("one", 3));
+  for (int k = 0; k < 60; ++k) {
+    const FairQueue::Taken taken = queue.Pop();
+    const bool one = taken.work.client == "one";
+    queue.Finish(taken.work, taken.work.seconds);
+    if (one) {
+      ++served;
+      Push(&queue, Of("one", 3));
+    }
+  }
+  EXPECT_NEAR(served, 15, 1);
+}
+
+TEST(FairQueueTest, OfAClientTheLowestTicketComesFirst) {
+  FairQueue queue;
+  for (const std::uint64_t ticket : {3U, 1U, 2U}) {
+    queue.Push({WorkClass::kInteractive, "a", ticket, 1.0}, {});
+  }
+  std::vector<std::uint64_t> order;
+  while (!queue.empty()) {
+    const FairQueue::Taken taken = queue.Pop();
+    order.push_back(taken.work.ticket);
+    queue.Finish(taken.work, 1);
+  }
+  EXPECT_THAT(order, ElementsAre(1, 2, 3));
+}
+
+TEST(FairQueueTest, InteractiveComesBeforeBatchWhichStillMoves) {
+  FairQueue queue;
+  Push(&queue, Of("batch", 1, WorkClass::kBatch), 100);
+  Push(&queue, Of("interactive", 1), 100);
+  EXPECT_NEAR(Count(Serve(&queue, 100))["batch"], 10, 1);
+}
+
+TEST(FairQueueTest, OpeningComesBeforeBoth) {
+  FairQueue queue;
+  Push(&queue, Of("a", 1), 100);
+  Serve(&queue, 50);
+  Push(&queue, Of("b", 1e-4, WorkClass::kOpening), 20);
+  EXPECT_EQ(Count(Serve(&queue, 21))["b"], 20);
+}
+
+TEST(FairQueueTest, ExpectsTheFinishOfTheFluidModel) {
+  FairQueue queue;
+  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 2), 1), 2);
+  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 2), 4), 0.5);
+  Push(&queue, Of("greedy", 1), 100);
+  // It gets as much as the one who asks, no more; its own goes behind itself.
+  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 2), 1), 4);
+  EXPECT_EQ(queue.ExpectedSeconds(Of("greedy", 2), 1), 102);
+  Push(&queue, Of("small", 0.5));
+  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 2), 1), 4.5);
+  // Batch work in the other class takes a tenth, and no more than it has.
+  Push(&queue, Of("batch", 0.1, WorkClass::kBatch));
+  EXPECT_THAT(queue.ExpectedSeconds(Of("a", 2), 1), DoubleNear(4.6, 1e-9));
+  Push(&queue, Of("batch", 100, WorkClass::kBatch));
+  EXPECT_THAT(queue.ExpectedSeconds(Of("a", 2), 1), DoubleNear(5.0, 1e-9));
+}
+
+TEST(FairQueueTest, BatchCallsOfAClientTakeTurns) {
+  FairQueue queue;
+  Push(&queue, Of("a", 1000, WorkClass::kBatch), 2);
+  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 5, WorkClass::kBatch), 1), 15);
+  const FairQueue::Taken taken = queue.Pop();
+  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 5, WorkClass::kBatch), 1), 15);
+  // Without a price: when its first message would come.
+  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 0, WorkClass::kBatch), 1), 0);
+  queue.Finish(taken.work, 1);
+}
+
+TEST(FairQueueTest, TheExpectationHoldsOnASimulatedWorker) {
+  FairQueue queue;
+  Push(&queue, Of("greedy", 0.01), 500);
+  Push(&queue, Of("other", 0.01), 30);
+  // 40 tasks whose last one ends the call.
+  const double expected = queue.ExpectedSeconds(Of("mine", 0.4), 1);
+  Push(&queue, Of("mine", 0.01), 40);
+  double now = 0;
+  for (int mine = 0; mine < 40;) {
+    const FairQueue::Taken taken = queue.Pop();
+    queue.Finish(taken.work, 0.01);
+    now += 0.01;
+    mine += taken.work.client == "mine" ? 1 : 0;
+  }
+  EXPECT_NEAR(now, expected, 0.05);
+}
+
+TEST(PriceBookTest, LearnsByMethod) {
+  PriceBook prices;
+  EXPECT_EQ(prices.Price("A", 2), 2);
+  for (int k = 0; k < 200; ++k) prices.Learn("A", 1, 3);
+  EXPECT_NEAR(prices.Price("A", 2), 6, 0.01);
+  EXPECT_NEAR(prices.Price("A", 0), 3, 0.01);
+  EXPECT_EQ(prices.Price("B", 2), 2);
+  // One strange call does not make a method unusable.
+  prices.Learn("A", 1e-9, 100);
+  EXPECT_LT(prices.Price("A", 2), 8);
+}
+
+}  // namespace
+}  // namespace terrane::server
