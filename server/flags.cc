@@ -45,6 +45,8 @@ std::string Footer() {
          "Examples:\n"
          "  terrane-server --listen 127.0.0.1:0\n"
          "  terrane-server --workers 4 --log-format json 2>server.log\n"
+         "  terrane-server --listen 0.0.0.0:50051 --tls-cert server.pem "
+         "--tls-key server.key\n"
          "  terrane-server --listen 0.0.0.0:50051 --insecure   "
          "(behind a proxy that ends TLS)\n";
 }
@@ -53,14 +55,40 @@ void AddNetworkFlags(CLI::App* app, Flags* flags) {
   app->add_option("--listen", flags->server.listen,
                   "Address and port; port 0 takes a free one and prints it")
       ->capture_default_str();
-  app->add_flag("--insecure", flags->insecure,
-                "Allow an address that other machines reach, without TLS");
+  app->add_option("--max-connections",
+                  flags->server.connections.max_connections,
+                  "Connections open at a time, one more is reset; fewer where "
+                  "the limit of descriptors is lower")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app->add_option("--max-connection-age-seconds", flags->max_age_seconds,
+                  "After this long a connection takes no new call, which "
+                  "spreads clients over replicas again")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   app->add_flag("--reflection", flags->server.reflection,
                 "Answer gRPC server reflection (grpcurl, buf curl)");
   app->add_option("--drain-seconds", flags->drain_seconds,
                   "Time for running calls to end after SIGTERM or SIGINT")
       ->check(CLI::Range(0, 3600))
       ->capture_default_str();
+}
+
+void AddSecurityFlags(CLI::App* app, Flags* flags) {
+  TlsFiles& tls = flags->server.tls;
+  CLI::Option* certificate = app->add_option(
+      "--tls-cert", tls.certificate,
+      "Serve TLS with this certificate chain (PEM); looked at every ten "
+      "seconds, so that a new one needs no restart");
+  CLI::Option* key =
+      app->add_option("--tls-key", tls.key, "Its private key (PEM)");
+  certificate->needs(key);
+  key->needs(certificate);
+  app->add_option("--tls-client-ca", tls.client_ca,
+                  "Demand client certificates that these sign (PEM)")
+      ->needs(certificate);
+  app->add_flag("--insecure", flags->insecure,
+                "Allow an address that other machines reach, without TLS");
 }
 
 void AddWorkFlags(CLI::App* app, Flags* flags) {
@@ -122,10 +150,10 @@ std::optional<std::string> Conflict(const Flags& flags) {
   if (listen.find(':') == std::string::npos) {
     return "--listen must be ADDRESS:PORT, got " + listen;
   }
-  if (!flags.insecure && !IsLoopback(listen)) {
+  if (!flags.server.tls.on() && !flags.insecure && !IsLoopback(listen)) {
     return "--listen " + listen +
-           " is reachable from other machines; use 127.0.0.1, or add "
-           "--insecure to serve it without TLS";
+           " is reachable from other machines; use 127.0.0.1, or --tls-cert "
+           "and --tls-key, or add --insecure to serve it without TLS";
   }
   return std::nullopt;
 }
@@ -140,6 +168,8 @@ void Resolve(Flags* flags) {
   limits.max_raster_samples =
       std::min(limits.max_raster_samples,
                limits.raster_store_bytes / std::int64_t{sizeof(float)});
+  flags->server.connections.max_age =
+      std::chrono::seconds(flags->max_age_seconds);
   flags->server.workers = flags->workers > 0 ? flags->workers : UsableCpus();
 }
 
@@ -152,6 +182,7 @@ std::string HostOf(const std::string& address) {
 std::optional<int> ParseFlags(int argc, char** argv, Flags* flags) {
   CLI::App app("Serves Terrane's generators over gRPC (terrane.v1).");
   AddNetworkFlags(&app, flags);
+  AddSecurityFlags(&app, flags);
   AddWorkFlags(&app, flags);
   AddLimitFlags(&app, flags);
   AddLogFlags(&app, flags);

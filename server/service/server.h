@@ -15,7 +15,9 @@
 
 #include "absl/status/statusor.h"
 #include "server/actor/actor.h"
+#include "server/service/acceptor.h"
 #include "server/service/call_context.h"
+#include "server/service/connection_limits.h"
 #include "server/service/flower_service.h"
 #include "server/service/info_service.h"
 #include "server/service/raster_service.h"
@@ -23,6 +25,7 @@
 #include "server/service/spot_table_service.h"
 #include "server/service/surface_service.h"
 #include "server/service/terrain_service.h"
+#include "server/service/tls.h"
 #include "server/service/tree_service.h"
 
 namespace terrane::server {
@@ -32,12 +35,15 @@ struct ServerOptions {
   Limits limits;
   int workers = 1;
   bool reflection = false;
+  ConnectionLimits connections;
+  TlsFiles tls;
 };
 
 class Server {
  public:
   // Serves `actor` and writes a line per call to `log`; both outlive the
-  // server. Errors: UNAVAILABLE when the address cannot be listened on.
+  // server. Errors: UNAVAILABLE when the address cannot be listened on,
+  // INVALID_ARGUMENT for an option that cannot be followed.
   static absl::StatusOr<std::unique_ptr<Server>> Start(
       const ServerOptions& options, Actor* actor, CallLog* log);
   // Cancels what is still running.
@@ -46,16 +52,18 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   // The port that was taken.
-  int port() const { return port_; }
+  int port() const { return acceptor_->port(); }
+  const Acceptor& acceptor() const { return *acceptor_; }
 
   // The ordered end: health says NOT_SERVING, `grace` lets balancers see it,
-  // then no new call is taken and the running ones have `drain` to end before
-  // they are cancelled.
+  // then no new connection or call is taken and the running calls have `drain`
+  // to end before they are cancelled.
   void Drain(std::chrono::milliseconds grace, std::chrono::milliseconds drain);
 
  private:
   Server(const ServerOptions& options, Actor* actor, CallLog* log);
 
+  absl::Status Build(const ServerOptions& options);
   void SetServing(bool serving);
 
   StreamGate gate_;
@@ -69,9 +77,10 @@ class Server {
   RasterServiceImpl raster_service_;
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;
-  int port_ = 0;
   // Last, so that it goes first: no call outlives what it works with.
   std::unique_ptr<grpc::Server> server_;
+  // Hands connections to the server.
+  std::unique_ptr<Acceptor> acceptor_;
 };
 
 }  // namespace terrane::server
