@@ -52,6 +52,7 @@ std::string Footer() {
 }
 
 void AddNetworkFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Network");
   app->add_option("--listen", flags->server.listen,
                   "Address and port; port 0 takes a free one and prints it")
       ->capture_default_str();
@@ -75,6 +76,7 @@ void AddNetworkFlags(CLI::App* app, Flags* flags) {
 }
 
 void AddSecurityFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Security");
   TlsFiles& tls = flags->server.tls;
   CLI::Option* certificate = app->add_option(
       "--tls-cert", tls.certificate,
@@ -89,9 +91,30 @@ void AddSecurityFlags(CLI::App* app, Flags* flags) {
       ->needs(certificate);
   app->add_flag("--insecure", flags->insecure,
                 "Allow an address that other machines reach, without TLS");
+  TokenOptions& tokens = flags->server.access.tokens;
+  CLI::Option* jwt_key = app->add_option(
+      "--jwt-key", tokens.key_file,
+      "Demand bearer tokens (JWT) that this public key (PEM) verifies: RS256 "
+      "or ES256");
+  app->add_option("--jwt-issuer", tokens.issuer,
+                  "Take only tokens of this issuer (iss)")
+      ->needs(jwt_key);
+  app->add_option("--jwt-audience", tokens.audience,
+                  "Take only tokens for this audience (aud)")
+      ->needs(jwt_key);
+  app->add_option("--client-streams", flags->server.access.client_calls,
+                  "Calls of one client at a time, a token's subject or else a "
+                  "host; 0: any number")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  app->add_flag("--trust-forwarded-for",
+                flags->server.access.trust_forwarded_for,
+                "Without tokens, a client is the last address of "
+                "x-forwarded-for: for a server that only a proxy reaches");
 }
 
 void AddWorkFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Work");
   Limits& limits = flags->server.limits;
   app->add_option("--workers", flags->workers,
                   "Generating threads; 0: one per usable CPU (cgroup quota "
@@ -115,6 +138,7 @@ void AddWorkFlags(CLI::App* app, Flags* flags) {
 }
 
 void AddLimitFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Limits");
   Limits& limits = flags->server.limits;
   app->add_option("--max-tile-size", limits.max_tile_size,
                   "Largest side of a tile in samples")
@@ -135,6 +159,7 @@ void AddLimitFlags(CLI::App* app, Flags* flags) {
 }
 
 void AddLogFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Logs");
   app->add_option("--log-level", flags->log_level, "Least level that is logged")
       ->check(CLI::IsMember(
           {"trace", "debug", "info", "warning", "error", "critical", "off"}))

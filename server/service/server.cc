@@ -6,6 +6,7 @@
 #include <grpcpp/server_builder.h>
 
 #include <thread>
+#include <utility>
 
 #include "server/service/descriptor_limit.h"
 
@@ -19,13 +20,19 @@ constexpr std::size_t kBufferPoolBytes = std::size_t{64} << 20;
 
 }  // namespace
 
-Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
-    : gate_(static_cast<std::size_t>(options.limits.max_concurrent_streams),
+Server::Server(const ServerOptions& options, Access access, Actor* actor,
+               CallLog* log)
+    : access_(std::move(access)),
+      gate_(static_cast<std::size_t>(options.limits.max_concurrent_streams),
             kWaitingPerActive * static_cast<std::size_t>(
                                     options.limits.max_concurrent_streams)),
       workers_(options.workers),
-      parts_{actor, &workers_, &gate_, log,
-             std::make_shared<BufferPool>(kBufferPoolBytes)},
+      parts_{actor,
+             &workers_,
+             &gate_,
+             log,
+             std::make_shared<BufferPool>(kBufferPoolBytes),
+             &access_},
       terrain_service_(parts_),
       surface_service_(parts_),
       tree_service_(parts_),
@@ -37,7 +44,10 @@ Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(
     const ServerOptions& options, Actor* actor, CallLog* log) {
-  std::unique_ptr<Server> server(new Server(options, actor, log));
+  auto access = Access::Create(options.access);
+  if (!access.ok()) return access.status();
+  std::unique_ptr<Server> server(
+      new Server(options, *std::move(access), actor, log));
   const int wanted = options.connections.max_connections;
   auto acceptor = Acceptor::Listen(options.listen, FitConnections(wanted));
   if (!acceptor.ok()) return acceptor.status();

@@ -16,6 +16,7 @@
 #include "absl/status/statusor.h"
 #include "server/actor/actor.h"
 #include "server/service/acceptor.h"
+#include "server/service/access.h"
 #include "server/service/call_context.h"
 #include "server/service/connection_limits.h"
 #include "server/service/flower_service.h"
@@ -37,6 +38,7 @@ struct ServerOptions {
   bool reflection = false;
   ConnectionLimits connections;
   TlsFiles tls;
+  AccessOptions access;
 };
 
 class Server {
@@ -61,11 +63,13 @@ class Server {
   void Drain(std::chrono::milliseconds grace, std::chrono::milliseconds drain);
 
  private:
-  Server(const ServerOptions& options, Actor* actor, CallLog* log);
+  Server(const ServerOptions& options, Access access, Actor* actor,
+         CallLog* log);
 
   absl::Status Build(const ServerOptions& options);
   void SetServing(bool serving);
 
+  const Access access_;
   StreamGate gate_;
   WorkerPool workers_;
   ServiceParts parts_;

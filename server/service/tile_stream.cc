@@ -31,11 +31,15 @@ TileStream::TileStream(const ServiceParts& parts, const char* method,
     : parts_(parts),
       context_(context),
       source_(std::move(source)),
-      record_(BeginCall(method, context)) {}
+      record_(BeginCall(parts, method, context)) {}
 
 void TileStream::EnterGate() {
   // Locked, so that the task cannot end the stream before the ticket is kept.
   std::unique_lock lock(mutex_);
+  if (!record_.status.ok()) {
+    EndWith(record_.status);
+    return Advance(std::move(lock));
+  }
   queued_ = true;
   ticket_ = parts_.gate->Enter([stream = self_] { Submit(stream); });
   if (ticket_.has_value()) return;

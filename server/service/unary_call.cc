@@ -9,6 +9,11 @@ grpc::ServerUnaryReactor* UnaryCall::Start(const ServiceParts& parts,
   std::shared_ptr<UnaryCall> call(
       new UnaryCall(parts, method, context, std::move(work)));
   call->self_ = call;
+  if (!call->record_.status.ok()) {
+    call->state_ = State::kFinished;
+    call->End(call->record_.status);
+    return call.get();
+  }
   parts.workers->Submit([call](core::TileScratch*) { call->Run(); });
   return call.get();
 }

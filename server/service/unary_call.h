@@ -45,7 +45,7 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
       : parts_(parts),
         context_(context),
         work_(std::move(work)),
-        record_(BeginCall(method, context)) {}
+        record_(BeginCall(parts, method, context)) {}
 
   void Run();
   void End(absl::Status status);

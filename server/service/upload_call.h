@@ -29,9 +29,13 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
       : parts_(parts),
         context_(context),
         response_(response),
-        record_(BeginCall(method, context)),
+        record_(BeginCall(parts, method, context)),
         upload_(std::move(upload)) {
-    this->StartRead(&part_);
+    if (record_.status.ok()) {
+      this->StartRead(&part_);
+    } else {
+      End(record_.status);
+    }
   }
 
   void OnReadDone(bool ok) override {
