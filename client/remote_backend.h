@@ -27,7 +27,8 @@ namespace terrane::client {
 class RemoteBackend : public Backend {
  public:
   // `target` is "host:port". Connects with the first call.
-  explicit RemoteBackend(const std::string& target);
+  explicit RemoteBackend(const std::string& target,
+                         const ChannelSecurity& security = {});
 
   absl::Status StreamTiles(const v1::StreamTilesRequest& request,
                            const OnHeader& on_header, const OnTile& on_tile,

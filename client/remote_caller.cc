@@ -1,7 +1,6 @@
 #include "client/remote_caller.h"
 
 #include <grpcpp/create_channel.h>
-#include <grpcpp/security/credentials.h>
 #include <grpcpp/support/channel_arguments.h>
 
 #include <algorithm>
@@ -53,12 +52,8 @@ bool Sleep(milliseconds duration, std::stop_token stop) {
   return !stop.stop_requested();
 }
 
-bool IsThisMachine(const std::string& target) {
-  return target.starts_with("127.") || target.starts_with("localhost:") ||
-         target.starts_with("[::1]:");
-}
-
-std::shared_ptr<grpc::Channel> MakeChannel(const std::string& target) {
+absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenOwnChannel(
+    const std::string& target, const ChannelSecurity& security) {
   grpc::ChannelArguments arguments;
   // A proxy of the environment is the way to other machines.
   if (IsThisMachine(target)) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
@@ -67,18 +62,26 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& target) {
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1'000);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
-  return grpc::CreateCustomChannel(target, grpc::InsecureChannelCredentials(),
-                                   arguments);
+  return OpenChannel(target, security, arguments);
+}
+
+// What stubs can be made of where no channel can be: every call on it fails.
+std::shared_ptr<grpc::Channel> LameChannel(const std::string& target) {
+  return grpc::CreateChannel(target, nullptr);
 }
 
 }  // namespace
 
-RemoteCaller::RemoteCaller(const std::string& target)
-    : target_(target), channel_(MakeChannel(target)) {}
+RemoteCaller::RemoteCaller(const std::string& target,
+                           const ChannelSecurity& security)
+    : target_(target),
+      opened_(OpenOwnChannel(target, security)),
+      channel_(opened_.ok() ? *opened_ : LameChannel(target)) {}
 
 absl::Status RemoteCaller::Run(CallKind kind,
                                const std::function<Attempt()>& attempt,
                                std::stop_token stop) {
+  if (!opened_.ok()) return opened_.status();
   int failures = 0;
   int allowed = kTriesBeforeContact;
   std::set<std::string> brought_back;

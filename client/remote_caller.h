@@ -21,6 +21,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/channel.h"
 #include "client/status_details.h"
 
 namespace terrane::client {
@@ -55,8 +56,10 @@ class RemoteCaller {
   using BringBack = std::function<std::optional<absl::Status>(
       const std::string& content_id, std::stop_token stop)>;
 
-  // `target` is "host:port". Connects with the first call.
-  explicit RemoteCaller(const std::string& target);
+  // `target` is "host:port". Connects with the first call; where the channel
+  // cannot be opened (client/channel.h), every call answers why.
+  explicit RemoteCaller(const std::string& target,
+                        const ChannelSecurity& security = {});
 
   const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
   void SetBringBack(BringBack bring_back) {
@@ -89,6 +92,7 @@ class RemoteCaller {
   bool Wait(const RemoteError& error, int failures, std::stop_token stop);
 
   const std::string target_;
+  const absl::StatusOr<std::shared_ptr<grpc::Channel>> opened_;
   const std::shared_ptr<grpc::Channel> channel_;
   BringBack bring_back_;
   // Jitter of the waits; never touches a result.

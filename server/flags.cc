@@ -45,16 +45,28 @@ std::string Footer() {
          "Examples:\n"
          "  terrane-server --listen 127.0.0.1:0\n"
          "  terrane-server --workers 4 --log-format json 2>server.log\n"
+         "  terrane-server --listen 0.0.0.0:50051 --tls-cert server.pem "
+         "--tls-key server.key\n"
          "  terrane-server --listen 0.0.0.0:50051 --insecure   "
          "(behind a proxy that ends TLS)\n";
 }
 
 void AddNetworkFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Network");
   app->add_option("--listen", flags->server.listen,
                   "Address and port; port 0 takes a free one and prints it")
       ->capture_default_str();
-  app->add_flag("--insecure", flags->insecure,
-                "Allow an address that other machines reach, without TLS");
+  app->add_option("--max-connections",
+                  flags->server.connections.max_connections,
+                  "Connections open at a time, one more is reset; fewer where "
+                  "the limit of descriptors is lower")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app->add_option("--max-connection-age-seconds", flags->max_age_seconds,
+                  "After this long a connection takes no new call, which "
+                  "spreads clients over replicas again")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   app->add_flag("--reflection", flags->server.reflection,
                 "Answer gRPC server reflection (grpcurl, buf curl)");
   app->add_option("--drain-seconds", flags->drain_seconds,
@@ -63,7 +75,46 @@ void AddNetworkFlags(CLI::App* app, Flags* flags) {
       ->capture_default_str();
 }
 
+void AddSecurityFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Security");
+  TlsFiles& tls = flags->server.tls;
+  CLI::Option* certificate = app->add_option(
+      "--tls-cert", tls.certificate,
+      "Serve TLS with this certificate chain (PEM); looked at every ten "
+      "seconds, so that a new one needs no restart");
+  CLI::Option* key =
+      app->add_option("--tls-key", tls.key, "Its private key (PEM)");
+  certificate->needs(key);
+  key->needs(certificate);
+  app->add_option("--tls-client-ca", tls.client_ca,
+                  "Demand client certificates that these sign (PEM)")
+      ->needs(certificate);
+  app->add_flag("--insecure", flags->insecure,
+                "Allow an address that other machines reach, without TLS");
+  TokenOptions& tokens = flags->server.access.tokens;
+  CLI::Option* jwt_key = app->add_option(
+      "--jwt-key", tokens.key_file,
+      "Demand bearer tokens (JWT) that this public key (PEM) verifies: RS256 "
+      "or ES256");
+  app->add_option("--jwt-issuer", tokens.issuer,
+                  "Take only tokens of this issuer (iss)")
+      ->needs(jwt_key);
+  app->add_option("--jwt-audience", tokens.audience,
+                  "Take only tokens for this audience (aud)")
+      ->needs(jwt_key);
+  app->add_option("--client-streams", flags->server.access.client_calls,
+                  "Calls of one client at a time, a token's subject or else a "
+                  "host; 0: any number")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  app->add_flag("--trust-forwarded-for",
+                flags->server.access.trust_forwarded_for,
+                "Without tokens, a client is the last address of "
+                "x-forwarded-for: for a server that only a proxy reaches");
+}
+
 void AddWorkFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Work");
   Limits& limits = flags->server.limits;
   app->add_option("--workers", flags->workers,
                   "Generating threads; 0: one per usable CPU (cgroup quota "
@@ -96,6 +147,7 @@ void AddWorkFlags(CLI::App* app, Flags* flags) {
 }
 
 void AddLimitFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Limits");
   Limits& limits = flags->server.limits;
   app->add_option("--max-tile-size", limits.max_tile_size,
                   "Largest side of a tile in samples")
@@ -116,6 +168,7 @@ void AddLimitFlags(CLI::App* app, Flags* flags) {
 }
 
 void AddLogFlags(CLI::App* app, Flags* flags) {
+  app->option_defaults()->group("Logs");
   app->add_option("--log-level", flags->log_level, "Least level that is logged")
       ->check(CLI::IsMember(
           {"trace", "debug", "info", "warning", "error", "critical", "off"}))
@@ -131,10 +184,10 @@ std::optional<std::string> Conflict(const Flags& flags) {
   if (listen.find(':') == std::string::npos) {
     return "--listen must be ADDRESS:PORT, got " + listen;
   }
-  if (!flags.insecure && !IsLoopback(listen)) {
+  if (!flags.server.tls.on() && !flags.insecure && !IsLoopback(listen)) {
     return "--listen " + listen +
-           " is reachable from other machines; use 127.0.0.1, or add "
-           "--insecure to serve it without TLS";
+           " is reachable from other machines; use 127.0.0.1, or --tls-cert "
+           "and --tls-key, or add --insecure to serve it without TLS";
   }
   return std::nullopt;
 }
@@ -151,6 +204,8 @@ void Resolve(Flags* flags) {
                limits.raster_store_bytes / std::int64_t{sizeof(float)});
   flags->server.stream_idle = std::chrono::seconds(flags->stream_idle_seconds);
   flags->server.patience = std::chrono::seconds(flags->patience_seconds);
+  flags->server.connections.max_age =
+      std::chrono::seconds(flags->max_age_seconds);
   flags->server.workers = flags->workers > 0 ? flags->workers : UsableCpus();
 }
 
@@ -163,6 +218,7 @@ std::string HostOf(const std::string& address) {
 std::optional<int> ParseFlags(int argc, char** argv, Flags* flags) {
   CLI::App app("Serves Terrane's generators over gRPC (terrane.v1).");
   AddNetworkFlags(&app, flags);
+  AddSecurityFlags(&app, flags);
   AddWorkFlags(&app, flags);
   AddLimitFlags(&app, flags);
   AddLogFlags(&app, flags);

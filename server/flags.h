@@ -13,6 +13,7 @@ namespace terrane::server {
 struct Flags {
   ServerOptions server;
   bool insecure = false;
+  int max_age_seconds = 3600;
   int workers = 0;
   std::int64_t raster_store_mib = 1024;
   std::int64_t prepared_mib = 2048;

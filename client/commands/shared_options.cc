@@ -25,6 +25,37 @@ const std::map<std::string, v1::HeightMapping> kMappings = {
 const std::map<std::string, v1::Sampling> kSamplings = {
     {"point", v1::SAMPLING_POINT}, {"area", v1::SAMPLING_AREA}};
 
+// Each has its variable in the environment, as --server has.
+void AddSecurityOptions(CLI::App* command, ChannelSecurity* security) {
+  CLI::Option* tls =
+      command->add_flag("--tls", security->tls, "Speak TLS with the server")
+          ->envname("TERRANE_TLS");
+  CLI::Option* ca =
+      command->add_option("--tls-ca", security->ca,
+                          "Who signs the server's certificate (PEM; default: "
+                          "whom the system trusts)");
+  CLI::Option* certificate =
+      command->add_option("--tls-cert", security->certificate,
+                          "This client's certificate chain (PEM), for servers "
+                          "that demand one");
+  CLI::Option* key =
+      command->add_option("--tls-key", security->key, "Its private key (PEM)");
+  CLI::Option* token = command->add_option(
+      "--token-file", security->token,
+      "File with a bearer token; without --tls only for a server on this "
+      "machine");
+  ca->envname("TERRANE_TLS_CA")->needs(tls);
+  certificate->envname("TERRANE_TLS_CERT")->needs(tls)->needs(key);
+  key->envname("TERRANE_TLS_KEY")->needs(certificate);
+  token->envname("TERRANE_TOKEN_FILE");
+  for (CLI::Option* file : {ca, certificate, key, token}) {
+    file->check(CLI::ExistingFile);
+  }
+  for (CLI::Option* option : {tls, ca, certificate, key, token}) {
+    option->group("Connection");
+  }
+}
+
 void AddSpotOptions(CLI::App* command, TerrainOptions* options) {
   CLI::Option* spots =
       command
@@ -51,6 +82,7 @@ void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
       ->envname("TERRANE_SERVER")
       ->capture_default_str()
       ->group("Connection");
+  AddSecurityOptions(command, &options->security);
   command
       ->add_flag("--local", options->local,
                  "Generate in this process instead of asking a server")
@@ -63,7 +95,9 @@ void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
 }
 
 std::unique_ptr<Backend> MakeBackend(const ConnectionOptions& options) {
-  if (!options.local) return std::make_unique<RemoteBackend>(options.server);
+  if (!options.local) {
+    return std::make_unique<RemoteBackend>(options.server, options.security);
+  }
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   return std::make_unique<LocalBackend>(
       options.threads > 0 ? options.threads : std::max(cores, 1));

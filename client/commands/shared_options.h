@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "client/backend.h"
+#include "client/channel_security.h"
 #include "client/chosen_terrain.h"
 
 namespace terrane::client {
@@ -26,6 +27,7 @@ CLI::Validator OneOf(const std::map<std::string, Value>& names) {
 // Who answers.
 struct ConnectionOptions {
   std::string server = "127.0.0.1:50051";
+  ChannelSecurity security;
   bool local = false;
   int threads = 0;  // 0: every core
 };

@@ -10,13 +10,16 @@ constexpr char kPayloadType[] = "terrane.reason";
 
 }  // namespace
 
-absl::Status NotFoundError(std::string message, ErrorReason reason) {
-  absl::Status status = absl::NotFoundError(message);
+absl::Status WithReason(absl::Status status, const ErrorReason& reason) {
   // reason, NUL, key, NUL, value: only the value comes from a request, and it
   // is last, so that whatever it holds cannot break the framing.
   status.SetPayload(kPayloadType, absl::Cord(reason.reason + '\0' + reason.key +
                                              '\0' + reason.value));
   return status;
+}
+
+absl::Status NotFoundError(std::string message, ErrorReason reason) {
+  return WithReason(absl::NotFoundError(message), reason);
 }
 
 std::optional<ErrorReason> ReasonOf(const absl::Status& status) {

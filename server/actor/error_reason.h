@@ -13,7 +13,7 @@ namespace terrane::server {
 
 struct ErrorReason {
   std::string reason;  // such as "RASTER_NOT_FOUND"
-  std::string key;     // of what was not found, such as "raster_id"
+  std::string key;     // of what it is about, such as "raster_id"
   std::string value;
 };
 
@@ -21,6 +21,8 @@ inline constexpr std::string_view kRasterNotFound = "RASTER_NOT_FOUND";
 inline constexpr std::string_view kSpotTableNotFound = "SPOT_TABLE_NOT_FOUND";
 inline constexpr std::string_view kPresetNotFound = "PRESET_NOT_FOUND";
 
+// The status, with a reason.
+absl::Status WithReason(absl::Status status, const ErrorReason& reason);
 // NOT_FOUND with a reason.
 absl::Status NotFoundError(std::string message, ErrorReason reason);
 

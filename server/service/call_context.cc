@@ -40,20 +40,16 @@ std::string RequestId(const grpc::CallbackServerContext& context) {
   return NewId();
 }
 
-// "ipv4:10.0.0.7:4711" -> "ipv4:10.0.0.7"
-std::string PeerHost(const grpc::CallbackServerContext& context) {
-  const std::string peer = context.peer();
-  return peer.substr(0, peer.rfind(':'));
-}
-
 }  // namespace
 
-CallRecord BeginCall(const char* method, grpc::CallbackServerContext* context) {
+CallRecord BeginCall(const ServiceParts& parts, const char* method,
+                     grpc::CallbackServerContext* context) {
   CallRecord record;
   record.method = method;
   record.request_id = RequestId(*context);
-  record.client = PeerHost(*context);
   context->AddInitialMetadata(kRequestIdKey, record.request_id);
+  record.status = parts.access->Admit(*context, &record);
+  AddPushback(record.status, context);
   return record;
 }
 

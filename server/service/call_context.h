@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "server/actor/actor.h"
+#include "server/service/access.h"
 #include "server/service/admission.h"
 #include "server/service/buffer_pool.h"
 #include "server/service/call_log.h"
@@ -25,12 +26,16 @@ struct ServiceParts {
   StallWatch* stalls = nullptr;
   CallLog* log = nullptr;
   std::shared_ptr<BufferPool> buffers;
+  const Access* access = nullptr;
 };
 
 // Begins the record of a call. Its id is the client's x-request-id (letters,
 // digits, '.', '_', '-'; at most 64), else a new one; the client gets it back
-// in the initial metadata.
-CallRecord BeginCall(const char* method, grpc::CallbackServerContext* context);
+// in the initial metadata. A call that may not be made
+// (server/service/access.h) has a status that is not OK, and is to be ended
+// with it.
+CallRecord BeginCall(const ServiceParts& parts, const char* method,
+                     grpc::CallbackServerContext* context);
 
 // The time that a call has left.
 Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context);

@@ -29,6 +29,8 @@ struct CallRecord {
   const char* method = "";
   // Who asks, for fairness; never logged.
   std::string client;
+  // Its place among the client's calls (client_places.h), until it is over.
+  std::shared_ptr<const void> place;
   std::string recipe_hash;
   std::int64_t tiles = 0;
   std::int64_t samples = 0;

@@ -19,7 +19,12 @@ grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* PrepareCall::Start(
   std::shared_ptr<PrepareCall> call(new PrepareCall(parts, context, request));
   call->self_ = call;
   {
-    std::lock_guard lock(call->mutex_);
+    std::unique_lock lock(call->mutex_);
+    if (!call->record_.status.ok()) {
+      call->outcome_ = call->record_.status;
+      call->EndIfReady(std::move(lock));
+      return call.get();
+    }
     call->SetTimer();
   }
   // Minutes, perhaps: batch work, whose end nobody can tell before it began.

@@ -44,7 +44,7 @@ class PrepareCall final
       : parts_(parts),
         context_(context),
         request_(request),
-        record_(BeginCall("PrepareTerrain", context)) {}
+        record_(BeginCall(parts, "PrepareTerrain", context)) {}
 
   void Run();
   // Sets the timer for the next progress message. Under the mutex.

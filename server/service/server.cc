@@ -6,11 +6,13 @@
 #include <grpcpp/server_builder.h>
 
 #include <thread>
+#include <utility>
+
+#include "server/service/descriptor_limit.h"
 
 namespace terrane::server {
 namespace {
 
-constexpr int kMaxMetadataBytes = 8 * 1024;
 // Streams that may stand in line for each one that runs.
 constexpr std::size_t kWaitingPerActive = 4;
 // Buffers of tiles kept for the next ones.
@@ -18,8 +20,10 @@ constexpr std::size_t kBufferPoolBytes = std::size_t{64} << 20;
 
 }  // namespace
 
-Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
-    : gate_(static_cast<std::size_t>(options.limits.max_concurrent_streams),
+Server::Server(const ServerOptions& options, Access access, Actor* actor,
+               CallLog* log)
+    : access_(std::move(access)),
+      gate_(static_cast<std::size_t>(options.limits.max_concurrent_streams),
             kWaitingPerActive * static_cast<std::size_t>(
                                     options.limits.max_concurrent_streams)),
       workers_(options.workers),
@@ -31,7 +35,8 @@ Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
              &gate_,
              &stalls_,
              log,
-             std::make_shared<BufferPool>(kBufferPoolBytes)},
+             std::make_shared<BufferPool>(kBufferPoolBytes),
+             &access_},
       terrain_service_(parts_),
       surface_service_(parts_),
       tree_service_(parts_),
@@ -43,37 +48,65 @@ Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(
     const ServerOptions& options, Actor* actor, CallLog* log) {
-  std::unique_ptr<Server> server(new Server(options, actor, log));
+  auto access = Access::Create(options.access);
+  if (!access.ok()) return access.status();
+  std::unique_ptr<Server> server(
+      new Server(options, *std::move(access), actor, log));
+  const int wanted = options.connections.max_connections;
+  auto acceptor = Acceptor::Listen(options.listen, FitConnections(wanted));
+  if (!acceptor.ok()) return acceptor.status();
+  server->acceptor_ = *std::move(acceptor);
+  const int most = server->acceptor_->max_connections();
+  if (most < wanted) {
+    log->Event("connections limited",
+               "to " + std::to_string(most) + " instead of " +
+                   std::to_string(wanted) + ", by the limit of descriptors");
+  }
+  const absl::Status built = server->Build(options);
+  if (!built.ok()) return built;
+  server->SetServing(true);
+  return server;
+}
+
+absl::Status Server::Build(const ServerOptions& options) {
+  auto credentials = MakeServerCredentials(options.tls);
+  if (!credentials.ok()) return credentials.status();
   grpc::EnableDefaultHealthCheckService(true);
   if (options.reflection) {
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   }
   grpc::ServerBuilder builder;
-  builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(),
-                           &server->port_);
-  builder.RegisterService(&server->terrain_service_);
-  builder.RegisterService(&server->surface_service_);
-  builder.RegisterService(&server->tree_service_);
-  builder.RegisterService(&server->flower_service_);
-  builder.RegisterService(&server->render_service_);
-  builder.RegisterService(&server->raster_service_);
-  builder.RegisterService(&server->spot_table_service_);
-  builder.RegisterService(&server->info_service_);
+  const std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor>
+      grpc_in = builder.experimental().AddExternalConnectionAcceptor(
+          grpc::ServerBuilder::experimental_type::ExternalConnectionType::
+              FROM_FD,
+          *credentials);
+  builder.RegisterService(&terrain_service_);
+  builder.RegisterService(&surface_service_);
+  builder.RegisterService(&tree_service_);
+  builder.RegisterService(&flower_service_);
+  builder.RegisterService(&render_service_);
+  builder.RegisterService(&raster_service_);
+  builder.RegisterService(&spot_table_service_);
+  builder.RegisterService(&info_service_);
   builder.SetMaxReceiveMessageSize(
       static_cast<int>(options.limits.max_request_bytes));
-  builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kMaxMetadataBytes);
-  // Two servers on one port would share its calls at random.
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  LimitConnections(options.connections, &builder);
   // gRPC inflates a request before it looks at the size: a small one could fill
   // the memory. So requests come as they are (UNIMPLEMENTED otherwise).
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
-  server->server_ = builder.BuildAndStart();
-  if (server->server_ == nullptr || server->port_ == 0) {
-    return absl::UnavailableError("cannot listen on " + options.listen);
+  server_ = builder.BuildAndStart();
+  if (server_ == nullptr) {
+    return absl::InternalError("gRPC's server does not start");
   }
-  server->SetServing(true);
-  return server;
+  acceptor_->Start([grpc_in](int fd) {
+    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters
+        connection;
+    connection.fd = fd;
+    grpc_in->HandleNewConnection(&connection);
+  });
+  return absl::OkStatus();
 }
 
 Server::~Server() {
@@ -98,6 +131,7 @@ void Server::Drain(std::chrono::milliseconds grace,
                    std::chrono::milliseconds drain) {
   SetServing(false);
   std::this_thread::sleep_for(grace);
+  acceptor_->Stop();
   server_->Shutdown(std::chrono::system_clock::now() + drain);
   server_->Wait();
 }

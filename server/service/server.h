@@ -15,7 +15,10 @@
 
 #include "absl/status/statusor.h"
 #include "server/actor/actor.h"
+#include "server/service/acceptor.h"
+#include "server/service/access.h"
 #include "server/service/call_context.h"
+#include "server/service/connection_limits.h"
 #include "server/service/flower_service.h"
 #include "server/service/info_service.h"
 #include "server/service/raster_service.h"
@@ -23,6 +26,7 @@
 #include "server/service/spot_table_service.h"
 #include "server/service/surface_service.h"
 #include "server/service/terrain_service.h"
+#include "server/service/tls.h"
 #include "server/service/tree_service.h"
 
 namespace terrane::server {
@@ -36,12 +40,16 @@ struct ServerOptions {
   // A stream whose reader takes nothing for this time is ended.
   std::chrono::milliseconds stream_idle{60'000};
   bool reflection = false;
+  ConnectionLimits connections;
+  TlsFiles tls;
+  AccessOptions access;
 };
 
 class Server {
  public:
   // Serves `actor` and writes a line per call to `log`; both outlive the
-  // server. Errors: UNAVAILABLE when the address cannot be listened on.
+  // server. Errors: UNAVAILABLE when the address cannot be listened on,
+  // INVALID_ARGUMENT for an option that cannot be followed.
   static absl::StatusOr<std::unique_ptr<Server>> Start(
       const ServerOptions& options, Actor* actor, CallLog* log);
   // Cancels what is still running.
@@ -50,18 +58,22 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   // The port that was taken.
-  int port() const { return port_; }
+  int port() const { return acceptor_->port(); }
+  const Acceptor& acceptor() const { return *acceptor_; }
 
   // The ordered end: health says NOT_SERVING, `grace` lets balancers see it,
-  // then no new call is taken and the running ones have `drain` to end before
-  // they are cancelled.
+  // then no new connection or call is taken and the running calls have `drain`
+  // to end before they are cancelled.
   void Drain(std::chrono::milliseconds grace, std::chrono::milliseconds drain);
 
  private:
-  Server(const ServerOptions& options, Actor* actor, CallLog* log);
+  Server(const ServerOptions& options, Access access, Actor* actor,
+         CallLog* log);
 
+  absl::Status Build(const ServerOptions& options);
   void SetServing(bool serving);
 
+  const Access access_;
   StreamGate gate_;
   WorkerPool workers_;
   Admission admission_;
@@ -75,9 +87,10 @@ class Server {
   RasterServiceImpl raster_service_;
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;
-  int port_ = 0;
   // Last, so that it goes first: no call outlives what it works with.
   std::unique_ptr<grpc::Server> server_;
+  // Hands connections to the server.
+  std::unique_ptr<Acceptor> acceptor_;
 };
 
 }  // namespace terrane::server

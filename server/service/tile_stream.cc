@@ -40,9 +40,14 @@ TileStream::TileStream(const ServiceParts& parts, const char* method,
       context_(context),
       call_ticket_(parts.workers->NextTicket()),
       source_(std::move(source)),
-      record_(BeginCall(method, context)) {}
+      record_(BeginCall(parts, method, context)) {}
 
 void TileStream::EnterGate() {
+  if (!record_.status.ok()) {
+    std::unique_lock lock(mutex_);
+    EndWith(record_.status);
+    return Advance(std::move(lock));
+  }
   // Its price is not known yet; its client's calls before it are.
   Work arriving = NextWork();
   arriving.work_class = WorkClass::kInteractive;

@@ -10,6 +10,11 @@ grpc::ServerUnaryReactor* UnaryCall::Start(const ServiceParts& parts,
       new UnaryCall(parts, method, context, std::move(handler)));
   call->self_ = call;
   CallRecord& record = call->record_;
+  if (!record.status.ok()) {
+    call->state_ = State::kFinished;
+    call->End(record.status);
+    return call.get();
+  }
   record.estimated_seconds = parts.admission->prices().Price(method, 0);
   Work share;
   share.client = record.client;

@@ -45,7 +45,7 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
       : parts_(parts),
         context_(context),
         handler_(std::move(handler)),
-        record_(BeginCall(method, context)) {}
+        record_(BeginCall(parts, method, context)) {}
 
   void Refuse(const absl::Status& refusal);
   void Run();

@@ -29,10 +29,14 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
       : parts_(parts),
         context_(context),
         response_(response),
-        record_(BeginCall(method, context)),
+        record_(BeginCall(parts, method, context)),
         ticket_(parts.workers->NextTicket()),
         upload_(std::move(upload)) {
-    this->StartRead(&part_);
+    if (record_.status.ok()) {
+      this->StartRead(&part_);
+    } else {
+      End(record_.status);
+    }
   }
 
   void OnReadDone(bool ok) override {

@@ -1,0 +1,21 @@
+// What secures the connection to a server.
+#ifndef TERRANE_CLIENT_CHANNEL_SECURITY_H_
+#define TERRANE_CLIENT_CHANNEL_SECURITY_H_
+
+#include <string>
+
+namespace terrane::client {
+
+// Names of PEM files, and of one with a token; empty: none.
+struct ChannelSecurity {
+  bool tls = false;
+  std::string ca;           // who signs servers; none: whom the system trusts
+  std::string certificate;  // this client's own, for servers that demand one
+  std::string key;
+  // A bearer token, read anew for every call, so that a long run outlives it.
+  std::string token;
+};
+
+}  // namespace terrane::client
+
+#endif  // TERRANE_CLIENT_CHANNEL_SECURITY_H_

@@ -1,0 +1,67 @@
+// Access: who a call is from, and whether it may be made.
+//
+// Every call begins here (BeginCall, call_context.h). Its client is the subject
+// of its token ("sub:alice"), where tokens are asked for, else the host it
+// comes from ("ipv4:10.0.0.7"). Health checks, and reflection where it is on,
+// are gRPC's own services and open to all.
+//
+// Threads: any.
+#ifndef TERRANE_SERVER_SERVICE_ACCESS_H_
+#define TERRANE_SERVER_SERVICE_ACCESS_H_
+
+#include <grpcpp/server_context.h>
+
+#include <optional>
+#include <string_view>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "server/service/call_log.h"
+#include "server/service/client_places.h"
+#include "server/service/token_verifier.h"
+
+namespace terrane::server {
+
+// The scope that a method takes, as it stands in tokens: terrane.read for what
+// only looks something up, terrane.generate for what computes, terrane.upload
+// for what is kept. Nothing for an unknown method, which nobody may call.
+std::optional<std::string_view> ScopeOf(std::string_view method);
+
+inline constexpr std::string_view kTokenMissing = "TOKEN_MISSING";
+inline constexpr std::string_view kScopeMissing = "SCOPE_MISSING";
+inline constexpr std::string_view kTooManyCalls = "TOO_MANY_CALLS";
+
+struct AccessOptions {
+  TokenOptions tokens;
+  // A client without a token is the last address of x-forwarded-for. For a
+  // server that only a proxy reaches: anybody else could write anything there.
+  bool trust_forwarded_for = false;
+  // Calls of one client at a time; 0: any number.
+  int client_calls = 0;
+};
+
+class Access {
+ public:
+  // Errors: as TokenVerifier::Load.
+  static absl::StatusOr<Access> Create(const AccessOptions& options);
+
+  // Fills in the client of `record`, whose method is set, and its place.
+  // Errors: UNAUTHENTICATED (TOKEN_MISSING, TOKEN_INVALID), PERMISSION_DENIED
+  // (SCOPE_MISSING), RESOURCE_EXHAUSTED (TOO_MANY_CALLS).
+  absl::Status Admit(const grpc::CallbackServerContext& context,
+                     CallRecord* record) const;
+
+ private:
+  explicit Access(const AccessOptions& options);
+
+  absl::Status Identify(const grpc::CallbackServerContext& context,
+                        CallRecord* record) const;
+
+  AccessOptions options_;
+  std::optional<TokenVerifier> tokens_;
+  mutable ClientPlaces places_;
+};
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_SERVICE_ACCESS_H_

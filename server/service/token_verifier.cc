@@ -1,0 +1,157 @@
+#include "server/service/token_verifier.h"
+
+#include <openssl/bio.h>
+#include <openssl/ec.h>
+#include <openssl/err.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <fstream>
+#include <iterator>
+#include <jwt/jwt.hpp>
+#include <memory>
+#include <sstream>
+
+#include "server/actor/error_reason.h"
+
+namespace terrane::server {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::uint32_t kLeewaySeconds = 30;
+constexpr int kMinRsaBits = 2048;
+constexpr std::size_t kMaxSubjectBytes = 256;
+
+absl::Status KeyError(const std::string& file, const char* problem) {
+  ERR_clear_error();
+  return absl::InvalidArgumentError("--jwt-key " + file + " " + problem);
+}
+
+absl::Status Invalid(const char* problem) {
+  return WithReason(
+      absl::UnauthenticatedError(std::string("the token ") + problem),
+      {std::string(kTokenInvalid), "problem", problem});
+}
+
+// The algorithm that goes with a key; empty for a key that will not do.
+std::string AlgorithmOf(const EVP_PKEY* key) {
+  if (EVP_PKEY_is_a(key, "RSA") == 1) {
+    return EVP_PKEY_get_bits(key) >= kMinRsaBits ? "RS256" : "";
+  }
+  char curve[32] = "";
+  std::size_t size = 0;
+  if (EVP_PKEY_is_a(key, "EC") == 1 &&
+      EVP_PKEY_get_group_name(key, curve, sizeof curve, &size) == 1 &&
+      std::string_view(curve, size) == SN_X9_62_prime256v1) {
+    return "ES256";
+  }
+  return "";
+}
+
+// Three parts in base64url without padding. cpp-jwt reads outside its tables
+// for any other byte.
+bool HasForm(std::string_view token) {
+  return std::count(token.begin(), token.end(), '.') == 2 &&
+         std::all_of(token.begin(), token.end(), [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                  (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
+         });
+}
+
+// RFC 7519: a string, or a list of them.
+bool Names(const Json& claim, const std::string& audience) {
+  return claim == audience ||
+         (claim.is_array() &&
+          std::find(claim.begin(), claim.end(), audience) != claim.end());
+}
+
+std::string StringOf(const Json& claims, const char* name) {
+  const auto claim = claims.find(name);
+  return claim != claims.end() && claim->is_string() ? claim->get<std::string>()
+                                                     : std::string();
+}
+
+const char* ProblemOf(const std::error_code& error) {
+  if (error == jwt::VerificationErrc::TokenExpired) return "has expired";
+  if (error == jwt::VerificationErrc::ImmatureSignature) {
+    return "is not valid yet";
+  }
+  if (error == jwt::VerificationErrc::InvalidAlgorithm ||
+      error == jwt::AlgorithmErrc::NoneAlgorithmUsed) {
+    return "is signed by an algorithm that is not accepted";
+  }
+  return "is malformed or its signature is not right";
+}
+
+absl::StatusOr<TokenClaims> ReadClaims(const Json& claims,
+                                       const TokenOptions& options) {
+  const auto expires = claims.find("exp");
+  if (expires == claims.end() || !expires->is_number() ||
+      expires->get<double>() < 0) {
+    return Invalid("has no time of expiry (exp)");
+  }
+  if (!options.issuer.empty() && StringOf(claims, "iss") != options.issuer) {
+    return Invalid("is by another issuer (iss)");
+  }
+  if (!options.audience.empty() &&
+      !Names(claims.value("aud", Json()), options.audience)) {
+    return Invalid("is for another audience (aud)");
+  }
+  TokenClaims result;
+  result.subject = StringOf(claims, "sub");
+  if (result.subject.empty() || result.subject.size() > kMaxSubjectBytes) {
+    return Invalid("has no subject (sub) of 1 to 256 bytes");
+  }
+  std::istringstream scopes(StringOf(claims, "scope"));
+  result.scopes = {std::istream_iterator<std::string>(scopes), {}};
+  return result;
+}
+
+}  // namespace
+
+absl::StatusOr<TokenVerifier> TokenVerifier::Load(const TokenOptions& options) {
+  const std::string& name = options.key_file;
+  std::ifstream file(name, std::ios::binary);
+  std::string pem{std::istreambuf_iterator<char>(file), {}};
+  if (!file) return KeyError(name, "cannot be read");
+  const std::unique_ptr<BIO, decltype(&BIO_free_all)> bio(
+      BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())), BIO_free_all);
+  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
+      PEM_read_bio_PUBKEY(bio.get(), nullptr, nullptr, nullptr), EVP_PKEY_free);
+  if (key == nullptr) return KeyError(name, "must hold a public key in PEM");
+  std::string algorithm = AlgorithmOf(key.get());
+  if (algorithm.empty()) {
+    return KeyError(name,
+                    "must be an RSA key of 2048 bits or more (RS256) or "
+                    "one on the curve P-256 (ES256)");
+  }
+  return TokenVerifier(options, std::move(pem), std::move(algorithm));
+}
+
+absl::StatusOr<TokenClaims> TokenVerifier::Verify(
+    std::string_view token) const {
+  if (!HasForm(token)) return Invalid("is malformed");
+  try {
+    std::error_code error;
+    const jwt::jwt_object object = jwt::decode(
+        jwt::string_view(token.data(), token.size()),
+        jwt::params::algorithms(std::vector<std::string>{algorithm_}), error,
+        jwt::params::secret(key_), jwt::params::leeway(kLeewaySeconds),
+        jwt::params::verify(true));
+    // OpenSSL's errors are the thread's, and gRPC reads them after its own
+    // calls.
+    ERR_clear_error();
+    if (error) return Invalid(ProblemOf(error));
+    return ReadClaims(object.payload().create_json_obj(), options_);
+  } catch (const std::exception&) {
+    // cpp-jwt throws where a part of the token is JSON of another kind.
+    ERR_clear_error();
+    return Invalid("is malformed");
+  }
+}
+
+}  // namespace terrane::server

@@ -1,0 +1,66 @@
+// TokenVerifier: who a bearer token (JWT, RFC 7519) speaks for, and what it
+// allows.
+//
+// One public key, and with it one algorithm: RS256 for an RSA key of at least
+// 2048 bits, ES256 for a key on P-256. What a token's header claims (none, an
+// HMAC keyed with the public key) never chooses another. The signature is
+// checked by cpp-jwt and OpenSSL.
+//
+// A token must have `exp` in the future, `nbf` not in it if there, both by the
+// system clock give or take 30 s; `sub`; `iss` and `aud` when asked for; its
+// scopes are the words of `scope`.
+//
+// Threads: Verify from any. Errors: UNAUTHENTICATED with the reason
+// TOKEN_INVALID. No error holds anything of the token.
+#ifndef TERRANE_SERVER_SERVICE_TOKEN_VERIFIER_H_
+#define TERRANE_SERVER_SERVICE_TOKEN_VERIFIER_H_
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+namespace terrane::server {
+
+inline constexpr std::string_view kTokenInvalid = "TOKEN_INVALID";
+
+struct TokenOptions {
+  std::string key_file;  // a public key in PEM; empty: no tokens are asked for
+  // Who must have made the token, and for whom; empty: anybody.
+  std::string issuer;
+  std::string audience;
+
+  bool on() const { return !key_file.empty(); }
+};
+
+// What a token says.
+struct TokenClaims {
+  std::string subject;
+  std::set<std::string> scopes;
+};
+
+class TokenVerifier {
+ public:
+  // Errors: INVALID_ARGUMENT naming the flag, when the file cannot be read or
+  // holds another key.
+  static absl::StatusOr<TokenVerifier> Load(const TokenOptions& options);
+
+  absl::StatusOr<TokenClaims> Verify(std::string_view token) const;
+
+ private:
+  TokenVerifier(TokenOptions options, std::string key, std::string algorithm)
+      : options_(std::move(options)),
+        key_(std::move(key)),
+        algorithm_(std::move(algorithm)) {}
+
+  TokenOptions options_;
+  std::string key_;  // PEM
+  std::string algorithm_;
+};
+
+}  // namespace terrane::server
+
+#endif  // TERRANE_SERVER_SERVICE_TOKEN_VERIFIER_H_

@@ -1,0 +1,302 @@
+#!/usr/bin/python3
+"""TLS, client certificates, tokens and limits of clients, with the real programs.
+
+Certificates are made by the openssl command, tokens by PyJWT: neither is what the
+server checks them with.
+
+Usage: security_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
+"""
+
+import base64
+import hashlib
+import hmac
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import grpc
+import jwt
+from grpc import StatusCode
+
+from real_server import INFO, Authority, RealServer, all_methods, call, endless, openssl, served
+
+TERRANE, SERVER, STUBS = sys.argv[1:4]
+METHODS = all_methods(STUBS)
+
+from terrane.v1 import common_pb2  # noqa: E402
+
+ISSUER, AUDIENCE = "https://issuer.test", "terrane"
+
+
+class EdgeTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = pathlib.Path(temporary.name)
+
+    def refused_start(self, *flags, code):
+        """What a server says that does not start."""
+        done = subprocess.run([SERVER, "--listen", "127.0.0.1:0", *map(str, flags)], capture_output=True, text=True, timeout=20)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done.stderr
+
+    def terrane(self, *arguments, expected=0, **environment):
+        done = subprocess.run([TERRANE, *map(str, arguments)], capture_output=True, text=True, timeout=60,
+                              env={**os.environ, **{name: str(value) for name, value in environment.items()}})
+        self.assertEqual(done.returncode, expected, done.stderr)
+        return done.stderr
+
+
+class TlsTest(EdgeTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.authority, cls.stranger = Authority(cls.folder, "authority"), Authority(cls.folder, "stranger")
+        cls.certificate, cls.key = cls.authority.issue("server")
+        cls.tls = ["--tls-cert", cls.certificate, "--tls-key", cls.key]
+
+    def channel(self, server, certificate=None, key=None):
+        return grpc.secure_channel(server.address, grpc.ssl_channel_credentials(
+            self.authority.certificate.read_bytes(), key and key.read_bytes(), certificate and certificate.read_bytes()))
+
+    def presented(self, server, *flags):
+        """The serial number of the certificate that a handshake shows; None if it fails."""
+        done = subprocess.run(["openssl", "s_client", "-connect", server.address, "-alpn", "h2", *flags], input="", text=True,
+                              capture_output=True, timeout=20)
+        if "BEGIN CERTIFICATE" not in done.stdout:
+            return None
+        return subprocess.run(["openssl", "x509", "-noout", "-serial"], input=done.stdout, text=True, capture_output=True).stdout
+
+    def test_calls_go_over_tls_1_2_or_later_and_nothing_else(self):
+        with served(SERVER, self.folder, *self.tls) as server:
+            with self.channel(server) as channel:
+                self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
+            with grpc.insecure_channel(server.address) as channel:
+                self.assertEqual(call(channel, INFO)[0], StatusCode.UNAVAILABLE)
+            self.assertTrue(self.presented(server, "-tls1_2"))
+            self.assertTrue(self.presented(server, "-tls1_3"))
+            self.assertIsNone(self.presented(server, "-tls1_1", "-cipher", "DEFAULT@SECLEVEL=0"))
+
+    def test_a_new_certificate_is_taken_while_calls_go_on(self):
+        files = [self.folder / "live.pem", self.folder / "live.key"]
+        for source, file in zip((self.certificate, self.key), files):
+            file.write_bytes(source.read_bytes())
+        with served(SERVER, self.folder, "--tls-cert", files[0], "--tls-key", files[1]) as server, self.channel(server) as channel:
+            self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
+            before = self.presented(server)
+            for source, file in zip(self.authority.issue("renewed"), files):
+                source.rename(file)
+            deadline = time.monotonic() + 40
+            while (after := self.presented(server)) in (before, None):
+                self.assertLess(time.monotonic(), deadline, "the new certificate is not used")
+                time.sleep(0.5)
+            self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
+
+    def test_a_client_certificate_is_demanded_and_checked(self):
+        with served(SERVER, self.folder, *self.tls, "--tls-client-ca", self.authority.certificate) as server:
+            with self.channel(server, *self.authority.issue("client")) as channel:
+                self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
+            for pair in [(), self.stranger.issue("client")]:
+                with self.channel(server, *pair) as channel:
+                    self.assertEqual(call(channel, INFO)[0], StatusCode.UNAVAILABLE)
+
+    def test_wrong_files_stop_the_start_and_name_their_flag(self):
+        _, other_key = self.authority.issue("other")
+        for flags, text in [(["--tls-cert", "no-file", "--tls-key", self.key], "--tls-cert no-file cannot be read"),
+                            (["--tls-cert", self.key, "--tls-key", self.key], "must hold a certificate in PEM"),
+                            (["--tls-cert", self.certificate, "--tls-key", "no-file"], "--tls-key no-file cannot be read"),
+                            (["--tls-cert", self.certificate, "--tls-key", other_key], "is not the key of the certificate"),
+                            ([*self.tls, "--tls-client-ca", "no-file"], "--tls-client-ca no-file cannot be read")]:
+            self.assertIn(text, self.refused_start(*flags, code=1))
+        self.assertIn("--tls-key", self.refused_start("--tls-cert", self.certificate, code=2))
+
+    def test_other_machines_are_served_only_with_tls_or_on_demand(self):
+        self.assertIn("reachable from other machines", self.refused_start("--listen", "0.0.0.0:0", code=2))
+        with served(SERVER, self.folder, *self.tls, listen="0.0.0.0:0") as server, self.channel(server) as channel:
+            self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
+
+    def test_the_command_line_client_speaks_it(self):
+        certificate, key = self.authority.issue("cli")
+        mutual = ["--tls-client-ca", self.authority.certificate]
+        with served(SERVER, self.folder, *self.tls, *mutual) as server:
+            ask = ["info", "--server", server.address]
+            self.terrane(*ask, "--tls", "--tls-ca", self.authority.certificate, "--tls-cert", certificate, "--tls-key", key)
+            self.terrane(*ask, TERRANE_TLS="true", TERRANE_TLS_CA=self.authority.certificate, TERRANE_TLS_CERT=certificate,
+                         TERRANE_TLS_KEY=key)
+            self.terrane(*ask, expected=4)
+            self.terrane(*ask, "--tls", "--tls-ca", self.stranger.certificate, expected=4)
+            self.assertIn("--tls-key", self.terrane(*ask, "--tls", "--tls-cert", certificate, expected=2))
+            self.assertIn("--tls", self.terrane(*ask, "--tls-ca", self.authority.certificate, expected=2))
+
+
+class TokenTest(EdgeTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.private, cls.public = cls.key_pair("rsa", "RSA", "rsa_keygen_bits:2048")
+        cls.ec_private, cls.ec_public = cls.key_pair("ec", "EC", "ec_paramgen_curve:P-256")
+        cls.server = RealServer(SERVER, cls.folder, "--jwt-key", cls.public, "--jwt-issuer", ISSUER, "--jwt-audience", AUDIENCE)
+        cls.channel = grpc.insecure_channel(cls.server.address)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.channel.close()
+        assert cls.server.stop() == 0
+
+    @classmethod
+    def key_pair(cls, name, kind, option):
+        private, public = cls.folder / f"{name}.key", cls.folder / f"{name}.pub"
+        openssl("genpkey", "-algorithm", kind, "-pkeyopt", option, "-out", private)
+        openssl("pkey", "-in", private, "-pubout", "-out", public)
+        return private, public
+
+    def claims(self, **changes):
+        claims = {"iss": ISSUER, "aud": AUDIENCE, "sub": "alice", "exp": int(time.time()) + 600, "scope": "terrane.read"}
+        return {name: value for name, value in {**claims, **changes}.items() if value is not None}
+
+    def token(self, key=None, algorithm="RS256", **changes):
+        return jwt.encode(self.claims(**changes), (key or self.private).read_text(), algorithm)
+
+    def call(self, token=None, method=INFO, **options):
+        return call(self.channel, method, metadata=[("authorization", f"Bearer {token}")] if token else [], **options)
+
+    def assert_refused(self, answer, code, reason):
+        self.assertEqual(answer[0], code, answer[1])
+        details = common_pb2.ErrorStatus.FromString(answer[2]["grpc-status-details-bin"])
+        info = next(d for d in details.details if d.type_url.endswith("ErrorInfo"))
+        self.assertEqual(common_pb2.ErrorInfo.FromString(info.value).reason, reason)
+
+    def test_every_method_asks_for_a_token_with_its_scope(self):
+        scopes = {scope: self.token(scope=f"terrane.{scope}") for scope in ("read", "generate", "upload")}
+        self.assertGreater(len(METHODS), 20)
+        for method in METHODS:
+            with self.subTest(method):
+                self.assert_refused(self.call(method=method), StatusCode.UNAUTHENTICATED, "TOKEN_MISSING")
+                self.assert_refused(self.call(self.token(scope="other"), method), StatusCode.PERMISSION_DENIED, "SCOPE_MISSING")
+                name = method.rsplit("/", 1)[1]
+                own = ("upload" if name.startswith("Upload") else
+                       "read" if name.startswith("Estimate") or name == "GetServerInfo" or name.endswith("Preset")
+                       or name in ("GetRaster", "GetSpotTable") else "generate")
+                for scope, token in scopes.items():
+                    code = self.call(token, method)[0]
+                    if scope == own:
+                        self.assertNotIn(code, (StatusCode.UNAUTHENTICATED, StatusCode.PERMISSION_DENIED))
+                    else:
+                        self.assertEqual(code, StatusCode.PERMISSION_DENIED)
+
+    def test_health_is_open(self):
+        self.assertEqual(self.call(method="/grpc.health.v1.Health/Check")[0], StatusCode.OK)
+
+    def test_good_tokens(self):
+        now = int(time.time())
+        for changes in [{}, {"aud": ["other", AUDIENCE]}, {"scope": "a terrane.read b"}, {"nbf": now}, {"exp": now - 10}, {"nbf": now + 10}]:
+            self.assertEqual(self.call(self.token(**changes))[0], StatusCode.OK, changes)
+
+    def hand_made(self, header, payload, secret=b""):
+        """A token with an HMAC, or none, whatever the header says."""
+        def encode(data):
+            return base64.urlsafe_b64encode(data).rstrip(b"=").decode()
+        text = encode(header.encode()) + "." + encode(payload.encode())
+        return text + "." + encode(hmac.digest(secret, text.encode(), hashlib.sha256))
+
+    def test_bad_tokens(self):
+        now = int(time.time())
+        good = self.token()
+        header, payload, signature = good.split(".")
+        claims = json.dumps(self.claims())
+        stranger, _ = self.key_pair("stranger", "RSA", "rsa_keygen_bits:2048")
+        bad = [self.token(**changes) for changes in [
+            {"exp": now - 60}, {"exp": None}, {"exp": -1000}, {"nbf": now + 120}, {"iss": "other"}, {"iss": None}, {"aud": "other"},
+            {"aud": None}, {"aud": ["other"]}, {"sub": None}, {"sub": ""}, {"sub": "a" * 300}]]
+        bad += [
+            self.token(stranger), self.token(self.ec_private, "ES256"), self.token(algorithm="RS512"),
+            self.hand_made('{"alg":"HS256","typ":"JWT"}', claims, self.public.read_bytes()),
+            self.hand_made('{"alg":"none"}', claims), self.hand_made('{"alg":"none"}', claims).rsplit(".", 1)[0] + ".",
+            self.hand_made('{"alg":"RS256"}', claims), self.hand_made('{"alg":7}', claims), self.hand_made('{}', claims),
+            self.hand_made('[]', claims), self.hand_made('7', claims), self.hand_made('{"alg":"RS256"}', '[]'),
+            self.hand_made('{"alg":"RS256"}', "[" * 3000), self.hand_made('{"alg":"RS256"}', '{"exp":"soon"}'),
+            self.hand_made('{"alg":"RS256"}', '{"a":' * 500 + "1" + "}" * 500),
+            f"{header}.{payload[:-4]}AAAA.{signature}", f"{header}.{payload}.{signature[:-8]}", f"{header}.{payload}.",
+            f"{header}.{payload}", header, "..", ".", "a.b.c", f"{good}.{signature}", f"{header}.{payload}.{signature}=", "*.*.*",
+            good.replace(".", "~"), f" {good}"]
+        for token in bad:
+            self.assert_refused(self.call(token), StatusCode.UNAUTHENTICATED, "TOKEN_INVALID")
+        twice = call(self.channel, INFO, metadata=[("authorization", f"Bearer {good}")] * 2)
+        self.assert_refused(twice, StatusCode.UNAUTHENTICATED, "TOKEN_MISSING")
+        self.assertEqual(self.call(good)[0], StatusCode.OK)
+        log = self.server.log()
+        self.assertIn("TOKEN_INVALID", log)
+        for secret in (header, payload, signature, "alice"):
+            self.assertNotIn(secret, log)
+
+    def test_the_key_decides_on_the_algorithm(self):
+        with served(SERVER, self.folder, "--jwt-key", self.ec_public) as server, grpc.insecure_channel(server.address) as channel:
+            for token, code in [(self.token(self.ec_private, "ES256"), StatusCode.OK), (self.token(), StatusCode.UNAUTHENTICATED)]:
+                self.assertEqual(call(channel, INFO, metadata=[("authorization", f"Bearer {token}")])[0], code)
+
+    def test_keys_that_will_not_do_stop_the_start(self):
+        _, short = self.key_pair("short", "RSA", "rsa_keygen_bits:1024")
+        _, curve = self.key_pair("curve", "EC", "ec_paramgen_curve:P-384")
+        for file, text in [("no-file", "cannot be read"), (self.private, "must hold a public key"), (short, "2048 bits"),
+                           (curve, "P-256")]:
+            self.assertIn(text, self.refused_start("--jwt-key", file, code=1))
+        self.assertIn("--jwt-key", self.refused_start("--jwt-issuer", ISSUER, code=2))
+
+    def test_the_command_line_client_brings_it(self):
+        file = self.folder / "token.txt"
+        file.write_text(self.token() + "\n")
+        self.assertIn("bearer token", self.terrane("info", "--server", self.server.address, expected=1))
+        self.terrane("info", "--server", self.server.address, "--token-file", file)
+        self.terrane("info", "--server", self.server.address, TERRANE_TOKEN_FILE=file)
+        for other in ("server.test:50051", "10.0.0.1:1", "127.server.test:1"):
+            refusal = self.terrane("info", "--server", other, "--token-file", file, expected=1)
+            self.assertIn(f"would go to {other}", refusal)
+        file.write_text("two words")
+        self.assertIn("must hold one token", self.terrane("info", "--server", self.server.address, "--token-file", file, expected=1))
+
+
+class ClientLimitTest(EdgeTest):
+    def assert_counts(self, channel, one, other):
+        stream = endless(channel, one)
+        code, _, trailers = call(channel, INFO, metadata=one)
+        self.assertEqual(code, StatusCode.RESOURCE_EXHAUSTED)
+        self.assertGreater(int(trailers["grpc-retry-pushback-ms"]), 0)
+        self.assertEqual(call(channel, INFO, metadata=other)[0], StatusCode.OK)
+        stream.cancel()
+        deadline = time.monotonic() + 10
+        while call(channel, INFO, metadata=one)[0] != StatusCode.OK:
+            self.assertLess(time.monotonic(), deadline, "the place is not free again")
+            time.sleep(0.05)
+
+    def test_a_subject_has_its_places(self):
+        private, public = TokenTest.key_pair.__func__(type(self), "limit", "EC", "ec_paramgen_curve:P-256")
+        alice, bob = ([("authorization", "Bearer " + jwt.encode(
+            {"sub": name, "exp": int(time.time()) + 600, "scope": "terrane.read terrane.generate"}, private.read_text(), "ES256"))]
+            for name in ("alice", "bob"))
+        with served(SERVER, self.folder, "--jwt-key", public, "--client-streams", 1) as server:
+            with grpc.insecure_channel(server.address) as channel:
+                self.assert_counts(channel, alice, bob)
+
+    def test_a_host_behind_the_proxy_has_its_places(self):
+        one, other = [("x-forwarded-for", "9.9.9.9, 10.0.0.1")], [("x-forwarded-for", "10.0.0.1, 2001:db8::1")]
+        with served(SERVER, self.folder, "--trust-forwarded-for", "--client-streams", 1) as server:
+            with grpc.insecure_channel(server.address) as channel:
+                self.assert_counts(channel, one, other)
+                # What is no address counts for the proxy itself.
+                self.assert_counts(channel, [("x-forwarded-for", "nonsense")], one)
+
+    def test_without_trust_the_header_is_nothing(self):
+        with served(SERVER, self.folder, "--client-streams", 1) as server, grpc.insecure_channel(server.address) as channel:
+            stream = endless(channel, [("x-forwarded-for", "10.0.0.1")])
+            self.assertEqual(call(channel, INFO, metadata=[("x-forwarded-for", "10.0.0.2")])[0], StatusCode.RESOURCE_EXHAUSTED)
+            stream.cancel()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
