@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <thread>
+
+#include "server/service/control_group.h"
 
 namespace terrane::server {
 namespace {
@@ -21,34 +22,22 @@ int QuotaOf(const std::filesystem::path& file, int unlimited) {
   return cpus < unlimited ? std::max(1, static_cast<int>(cpus)) : unlimited;
 }
 
-// The process's group in the version 2 hierarchy: the line "0::/path".
-std::filesystem::path GroupPath(const std::string& self_cgroup) {
-  std::istringstream lines(self_cgroup);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("0::/")) return line.substr(4);
-  }
-  return {};
-}
-
 }  // namespace
 
 int CpusWithinQuota(int cores, const std::string& self_cgroup,
                     const std::filesystem::path& cgroup_root) {
   int cpus = cores;
-  std::filesystem::path group = GroupPath(self_cgroup);
-  while (true) {
-    cpus = std::min(cpus, QuotaOf(cgroup_root / group / "cpu.max", cpus));
-    if (group.empty()) return cpus;
-    group = group.parent_path();
+  for (const auto& file :
+       FilesUpwards(cgroup_root, ControlGroupOf(self_cgroup, ""), "cpu.max")) {
+    cpus = std::min(cpus, QuotaOf(file, cpus));
   }
+  return cpus;
 }
 
 int UsableCpus() {
   const int cores =
       std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  std::ostringstream self_cgroup;
-  self_cgroup << std::ifstream("/proc/self/cgroup").rdbuf();
-  return CpusWithinQuota(cores, self_cgroup.str(), "/sys/fs/cgroup");
+  return CpusWithinQuota(cores, SelfControlGroups(), kControlGroupRoot);
 }
 
 }  // namespace terrane::server
