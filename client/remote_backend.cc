@@ -39,8 +39,8 @@ const v1::StreamSurfaceResponse& MeshOrHeights(
 
 }  // namespace
 
-RemoteBackend::RemoteBackend(const std::string& target)
-    : caller_(target),
+RemoteBackend::RemoteBackend(const std::string& server)
+    : caller_(server),
       terrain_(v1::TerrainService::NewStub(caller_.channel())),
       surface_(v1::SurfaceService::NewStub(caller_.channel())),
       raster_(v1::RasterService::NewStub(caller_.channel())),

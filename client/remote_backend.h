@@ -26,8 +26,9 @@ namespace terrane::client {
 
 class RemoteBackend : public Backend {
  public:
-  // `target` is "host:port". Connects with the first call.
-  explicit RemoteBackend(const std::string& target);
+  // `server` is as client/server_address.h reads it. Connects with the first
+  // call.
+  explicit RemoteBackend(const std::string& server);
 
   absl::Status StreamTiles(const v1::StreamTilesRequest& request,
                            const OnHeader& on_header, const OnTile& on_tile,

@@ -11,6 +11,8 @@
 #include <set>
 #include <utility>
 
+#include "client/server_address.h"
+
 namespace terrane::client {
 namespace {
 
@@ -53,28 +55,30 @@ bool Sleep(milliseconds duration, std::stop_token stop) {
   return !stop.stop_requested();
 }
 
-bool IsThisMachine(const std::string& target) {
-  return target.starts_with("127.") || target.starts_with("localhost:") ||
-         target.starts_with("[::1]:");
-}
+}  // namespace
 
-std::shared_ptr<grpc::Channel> MakeChannel(const std::string& target) {
+std::shared_ptr<grpc::Channel> MakeChannel(const std::string& server,
+                                           ChannelKind kind) {
+  const ServerAddress address =
+      ParseServerAddress(server).value_or(ServerAddress{server});
   grpc::ChannelArguments arguments;
   // A proxy of the environment is the way to other machines.
-  if (IsThisMachine(target)) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  if (address.loopback) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  if (address.several) arguments.SetLoadBalancingPolicyName("round_robin");
+  if (kind == ChannelKind::kOwnConnection) {
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  }
   arguments.SetMaxReceiveMessageSize(kMaxMessageBytes);
   // A restarted server is found again within our own waits.
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1'000);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
-  return grpc::CreateCustomChannel(target, grpc::InsecureChannelCredentials(),
-                                   arguments);
+  return grpc::CreateCustomChannel(
+      address.target, grpc::InsecureChannelCredentials(), arguments);
 }
 
-}  // namespace
-
-RemoteCaller::RemoteCaller(const std::string& target)
-    : target_(target), channel_(MakeChannel(target)) {}
+RemoteCaller::RemoteCaller(const std::string& server)
+    : target_(server), channel_(MakeChannel(server, ChannelKind::kShared)) {}
 
 absl::Status RemoteCaller::Run(CallKind kind,
                                const std::function<Attempt()>& attempt,

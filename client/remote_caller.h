@@ -39,6 +39,15 @@ class CancelOnStop {
   std::stop_callback<Cancel> callback_;
 };
 
+// Channels to the same server share one TCP connection, unless each has its
+// own.
+enum class ChannelKind { kShared, kOwnConnection };
+
+// `server` is as client/server_address.h reads it. What that does not read goes
+// to gRPC as it is, and every call then fails with gRPC's reason.
+std::shared_ptr<grpc::Channel> MakeChannel(const std::string& server,
+                                           ChannelKind kind);
+
 class RemoteCaller {
  public:
   // What became of one try of a call.
@@ -55,8 +64,9 @@ class RemoteCaller {
   using BringBack = std::function<std::optional<absl::Status>(
       const std::string& content_id, std::stop_token stop)>;
 
-  // `target` is "host:port". Connects with the first call.
-  explicit RemoteCaller(const std::string& target);
+  // `server` is as client/server_address.h reads it. Connects with the first
+  // call.
+  explicit RemoteCaller(const std::string& server);
 
   const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
   void SetBringBack(BringBack bring_back) {
