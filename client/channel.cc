@@ -1,10 +1,9 @@
 #include "client/channel.h"
 
-#include <arpa/inet.h>
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
+#include <grpcpp/support/channel_arguments.h>
 #include <grpcpp/support/client_interceptor.h>
-#include <netinet/in.h>
 
 #include <algorithm>
 #include <fstream>
@@ -13,8 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "client/server_address.h"
+
 namespace terrane::client {
 namespace {
+
+// A tile of the largest size is just over gRPC's default of 4 MiB.
+constexpr int kMaxMessageBytes = 64 << 20;
 
 using grpc::experimental::ClientInterceptorFactoryInterface;
 using grpc::experimental::ClientRpcInfo;
@@ -112,28 +116,39 @@ absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> Credentials(
   return grpc::SslCredentials(options);
 }
 
-}  // namespace
-
-bool IsThisMachine(const std::string& target) {
-  const std::string host = target.substr(0, target.rfind(':'));
-  in_addr address{};
-  if (inet_pton(AF_INET, host.c_str(), &address) == 1) {
-    return (ntohl(address.s_addr) >> 24) == IN_LOOPBACKNET;
+grpc::ChannelArguments Arguments(const ServerAddress& address,
+                                 ChannelKind kind) {
+  grpc::ChannelArguments arguments;
+  // A proxy of the environment is the way to other machines.
+  if (address.loopback) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  if (address.several) arguments.SetLoadBalancingPolicyName("round_robin");
+  if (kind == ChannelKind::kOwnConnection) {
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   }
-  return host == "localhost" || host == "[::1]";
+  arguments.SetMaxReceiveMessageSize(kMaxMessageBytes);
+  // A restarted server is found again within our own waits.
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1'000);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
+  return arguments;
 }
 
+}  // namespace
+
 absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(
-    const std::string& target, const ChannelSecurity& security,
-    const grpc::ChannelArguments& arguments) {
+    const std::string& server, const ChannelSecurity& security,
+    ChannelKind kind) {
+  const absl::StatusOr<ServerAddress> address = ParseServerAddress(server);
+  if (!address.ok()) return address.status();
   auto credentials = Credentials(security);
   if (!credentials.ok()) return credentials.status();
+  const grpc::ChannelArguments arguments = Arguments(*address, kind);
   if (security.token.empty()) {
-    return grpc::CreateCustomChannel(target, *credentials, arguments);
+    return grpc::CreateCustomChannel(address->target, *credentials, arguments);
   }
-  if (!security.tls && !IsThisMachine(target)) {
+  if (!security.tls && !address->loopback) {
     return absl::InvalidArgumentError(
-        "the token would go to " + target +
+        "the token would go to " + server +
         " for everybody on the way to read; ask for TLS (--tls)");
   }
   absl::StatusOr<std::string> token = ReadToken(security.token);
@@ -142,7 +157,7 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(
   interceptors.push_back(std::make_unique<TokenAdderFactory>(
       std::make_shared<TokenFile>(security.token, *std::move(token))));
   return grpc::experimental::CreateCustomChannelWithInterceptors(
-      target, *credentials, arguments, std::move(interceptors));
+      address->target, *credentials, arguments, std::move(interceptors));
 }
 
 }  // namespace terrane::client

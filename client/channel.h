@@ -5,7 +5,6 @@
 #define TERRANE_CLIENT_CHANNEL_H_
 
 #include <grpcpp/channel.h>
-#include <grpcpp/support/channel_arguments.h>
 
 #include <memory>
 #include <string>
@@ -15,14 +14,16 @@
 
 namespace terrane::client {
 
-// True for "HOST:PORT" that is this machine, whatever the network does.
-bool IsThisMachine(const std::string& target);
+// Channels to the same server share one TCP connection, unless each has its
+// own.
+enum class ChannelKind { kShared, kOwnConnection };
 
-// Connects with the first call. Errors: INVALID_ARGUMENT when a file cannot be
+// `server` is as client/server_address.h reads it. Connects with the first
+// call. Errors: INVALID_ARGUMENT when it is no address, when a file cannot be
 // read, or when a token would leave this machine without TLS.
 absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(
-    const std::string& target, const ChannelSecurity& security,
-    const grpc::ChannelArguments& arguments);
+    const std::string& server, const ChannelSecurity& security,
+    ChannelKind kind);
 
 }  // namespace terrane::client
 

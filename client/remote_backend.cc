@@ -39,9 +39,9 @@ const v1::StreamSurfaceResponse& MeshOrHeights(
 
 }  // namespace
 
-RemoteBackend::RemoteBackend(const std::string& target,
+RemoteBackend::RemoteBackend(const std::string& server,
                              const ChannelSecurity& security)
-    : caller_(target, security),
+    : caller_(server, security),
       terrain_(v1::TerrainService::NewStub(caller_.channel())),
       surface_(v1::SurfaceService::NewStub(caller_.channel())),
       raster_(v1::RasterService::NewStub(caller_.channel())),

@@ -26,8 +26,9 @@ namespace terrane::client {
 
 class RemoteBackend : public Backend {
  public:
-  // `target` is "host:port". Connects with the first call.
-  explicit RemoteBackend(const std::string& target,
+  // `server` is as client/server_address.h reads it. Connects with the first
+  // call.
+  explicit RemoteBackend(const std::string& server,
                          const ChannelSecurity& security = {});
 
   absl::Status StreamTiles(const v1::StreamTilesRequest& request,

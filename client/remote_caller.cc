@@ -1,7 +1,6 @@
 #include "client/remote_caller.h"
 
 #include <grpcpp/create_channel.h>
-#include <grpcpp/support/channel_arguments.h>
 
 #include <algorithm>
 #include <chrono>
@@ -10,13 +9,12 @@
 #include <set>
 #include <utility>
 
+#include "client/channel.h"
+
 namespace terrane::client {
 namespace {
 
 using std::chrono::milliseconds;
-
-// A tile of the largest size is just over gRPC's default of 4 MiB.
-constexpr int kMaxMessageBytes = 64 << 20;
 
 // Tries in a row that bring nothing new: few when the server was never reached,
 // so that a wrong address shows at once; more to outlast a restart.
@@ -52,31 +50,18 @@ bool Sleep(milliseconds duration, std::stop_token stop) {
   return !stop.stop_requested();
 }
 
-absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenOwnChannel(
-    const std::string& target, const ChannelSecurity& security) {
-  grpc::ChannelArguments arguments;
-  // A proxy of the environment is the way to other machines.
-  if (IsThisMachine(target)) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  arguments.SetMaxReceiveMessageSize(kMaxMessageBytes);
-  // A restarted server is found again within our own waits.
-  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
-  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1'000);
-  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
-  return OpenChannel(target, security, arguments);
-}
-
 // What stubs can be made of where no channel can be: every call on it fails.
-std::shared_ptr<grpc::Channel> LameChannel(const std::string& target) {
-  return grpc::CreateChannel(target, nullptr);
+std::shared_ptr<grpc::Channel> LameChannel(const std::string& server) {
+  return grpc::CreateChannel(server, nullptr);
 }
 
 }  // namespace
 
-RemoteCaller::RemoteCaller(const std::string& target,
+RemoteCaller::RemoteCaller(const std::string& server,
                            const ChannelSecurity& security)
-    : target_(target),
-      opened_(OpenOwnChannel(target, security)),
-      channel_(opened_.ok() ? *opened_ : LameChannel(target)) {}
+    : target_(server),
+      opened_(OpenChannel(server, security, ChannelKind::kShared)),
+      channel_(opened_.ok() ? *opened_ : LameChannel(server)) {}
 
 absl::Status RemoteCaller::Run(CallKind kind,
                                const std::function<Attempt()>& attempt,

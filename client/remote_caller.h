@@ -56,9 +56,10 @@ class RemoteCaller {
   using BringBack = std::function<std::optional<absl::Status>(
       const std::string& content_id, std::stop_token stop)>;
 
-  // `target` is "host:port". Connects with the first call; where the channel
-  // cannot be opened (client/channel.h), every call answers why.
-  explicit RemoteCaller(const std::string& target,
+  // `server` is as client/server_address.h reads it. Connects with the first
+  // call; where the channel cannot be opened (client/channel.h), every call
+  // answers why.
+  explicit RemoteCaller(const std::string& server,
                         const ChannelSecurity& security = {});
 
   const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }

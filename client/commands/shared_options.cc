@@ -8,6 +8,7 @@
 
 #include "client/local_backend.h"
 #include "client/remote_backend.h"
+#include "client/server_address.h"
 #include "core/grid/lattice_window.h"
 
 namespace terrane::client {
@@ -74,12 +75,20 @@ void AddSpotOptions(CLI::App* command, TerrainOptions* options) {
       ->group("Spot heights");
 }
 
+// Empty when it is an address, as CLI11 wants it.
+std::string CheckServer(const std::string& text) {
+  return std::string(ParseServerAddress(text).status().message());
+}
+
 }  // namespace
 
 void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
   command
-      ->add_option("--server", options->server, "Server to ask, as host:port")
+      ->add_option("--server", options->server,
+                   "Server to ask, as host:port; replicas as a list or as "
+                   "dns:///name:port")
       ->envname("TERRANE_SERVER")
+      ->check(CheckServer)
       ->capture_default_str()
       ->group("Connection");
   AddSecurityOptions(command, &options->security);
