@@ -121,11 +121,6 @@ class Proxy:
         """Streams that a replica has now."""
         return self.number("haproxy_server_current_sessions", replica)
 
-    def calls(self):
-        """A line for each call that has ended; with ` ---- ` in it when it ended well."""
-        log = pathlib.Path(self.log.name).read_text(encoding="utf-8")
-        return [line for line in log.splitlines() if " clients terrane/" in line]
-
     def stop(self):
         self.process.terminate()
         self.process.wait(10)

@@ -73,7 +73,7 @@ class RulesTest(unittest.TestCase):
 class ScrapeTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.replica = processes.Replica(SERVER)
+        cls.replica = processes.Replica(SERVER, "--memory-limit-mib", "4096")
         cls.address = f"127.0.0.1:{cls.replica.port}"
         with tempfile.TemporaryDirectory() as folder:
             cls.ask("terrain", "--seed", "1", "--window", "0,0,300,200", "--out", f"{folder}/a.f32")
