@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""deploy/apt-packages-run.txt holds the package of every library that the programs load.
+"""The package lists of the images hold the package of every library that a program loads.
 
-Usage: check_run_packages.py PROGRAM...
+Usage: check_run_packages.py PROGRAM LIST...      lists by their names in deploy/
 """
 
 import pathlib
@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 
-LIST = pathlib.Path(__file__).resolve().parents[2] / "deploy" / "apt-packages-run.txt"
+DEPLOY = pathlib.Path(__file__).resolve().parents[2] / "deploy"
 # In every Debian that has a package manager.
 EVERYWHERE = {"libc6", "libgcc-s1", "libstdc++6"}
 
@@ -29,15 +29,15 @@ def package_of(library):
 
 
 def main():
-    listed = {line.split()[0] for line in LIST.read_text(encoding="ascii").splitlines() if line and line[0] != "#"}
-    missing = set()
-    for program in sys.argv[1:]:
-        needed = re.findall(r"NEEDED.*\[(.*)\]", output("readelf", "--dynamic", program))
-        paths = dict(re.findall(r"^\s*(\S+) => (/\S+)", output("ldd", program), re.MULTILINE))
-        missing |= {package_of(paths[name]) for name in needed if name in paths} - listed - EVERYWHERE
+    program, lists = sys.argv[1], sys.argv[2:]
+    lines = [line for name in lists for line in (DEPLOY / name).read_text(encoding="ascii").splitlines()]
+    listed = {line.split()[0] for line in lines if line and line[0] != "#"}
+    needed = re.findall(r"NEEDED.*\[(.*)\]", output("readelf", "--dynamic", program))
+    paths = dict(re.findall(r"^\s*(\S+) => (/\S+)", output("ldd", program), re.MULTILINE))
+    missing = {package_of(paths[name]) for name in needed if name in paths} - listed - EVERYWHERE
     if missing:
-        sys.exit(f"not in deploy/apt-packages-run.txt, but loaded: {', '.join(sorted(missing))}")
-    print(f"{len(listed)} packages hold what {len(sys.argv) - 1} programs load.")
+        sys.exit(f"{program} loads what {' and '.join(lists)} lack: {', '.join(sorted(missing))}")
+    print(f"{' and '.join(lists)} hold what {program} loads: {len(needed)} libraries.")
 
 
 main()

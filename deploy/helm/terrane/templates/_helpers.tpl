@@ -19,10 +19,12 @@ app.kubernetes.io/managed-by: {{ .Release.Service }}
 helm.sh/chart: {{ printf "%s-%s" .Chart.Name .Chart.Version }}
 {{- end }}
 
+{{/* The name of an image of the values: (list $ .Values.image). */}}
 {{- define "terrane.image" -}}
-{{- with .Values.image }}
+{{- $chart := (index . 0).Chart }}
+{{- with index . 1 }}
 {{- if .digest }}{{ .repository }}@{{ .digest }}
-{{- else }}{{ .repository }}:{{ .tag | default $.Chart.AppVersion }}{{ end }}
+{{- else }}{{ .repository }}:{{ .tag | default $chart.AppVersion }}{{ end }}
 {{- end }}
 {{- end }}
 
