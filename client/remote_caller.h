@@ -21,7 +21,6 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "client/channel.h"
 #include "client/status_details.h"
 
 namespace terrane::client {

@@ -1,11 +1,20 @@
 #!/usr/bin/env bash
-# Installs the packages of deploy/apt-packages.txt that are missing. Says what it
+# Installs the packages of a list beside this script that are missing. Says what it
 # is going to install before it does. Works as root or through sudo; quick when
 # everything is there; waits while another program holds apt's locks.
+#
+#   deploy/install-packages.sh                      apt-packages.txt, all of it
+#   deploy/install-packages.sh --build              without what only tests take
+#   deploy/install-packages.sh apt-packages-run.txt another list
 set -euo pipefail
 
-list="$(dirname "${BASH_SOURCE[0]}")/apt-packages.txt"
-readonly list
+build_only=false
+if [[ "${1:-}" == --build ]]; then
+  build_only=true
+  shift
+fi
+list="$(dirname "${BASH_SOURCE[0]}")/${1:-apt-packages.txt}"
+readonly build_only list
 readonly lock_wait_seconds=900
 
 # The packages of the list that this machine wants, one a line.
@@ -14,6 +23,7 @@ wanted_packages() {
   while read -r first second _; do
     case "${first}" in
       "" | "#"*) ;;
+      "[tests]") if ${build_only}; then return; fi ;;
       "[unless-command")
         if command -v "${second%]}" >/dev/null; then wanted=false; else wanted=true; fi
         ;;
@@ -53,7 +63,7 @@ apt_get() {
 mapfile -t wanted < <(wanted_packages)
 mapfile -t missing < <(missing_packages "${wanted[@]}")
 if ((${#missing[@]} == 0)); then
-  echo "All ${#wanted[@]} packages of deploy/apt-packages.txt are installed."
+  echo "All ${#wanted[@]} packages of deploy/${list##*/} are installed."
   exit 0
 fi
 

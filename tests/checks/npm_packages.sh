@@ -25,7 +25,7 @@ flock 9
 if ! cmp --silent "${list}" "${build}/installed.json"; then
   command -v npm >/dev/null || skip "there is no npm on this machine."
   cp "${list}" "${build}/package.json"
-  if ! npm install --prefix "${build}" --no-audit --no-fund --no-package-lock \
+  if ! npm install --prefix "${build}" --no-audit --no-fund --no-package-lock --omit=peer \
     --fetch-retries 1 --fetch-timeout 60000 >"${build}/npm.log" 2>&1; then
     cat "${build}/npm.log" >&2
     if grep -qE "ENOTFOUND|EAI_AGAIN|ECONN|ETIMEDOUT|ENETUNREACH|EHOSTUNREACH|network" "${build}/npm.log"; then

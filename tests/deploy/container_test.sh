@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Builds the image of deploy/container without a daemon and runs it as a cluster would:
+# container_test.sh BUILD_DIR TERRANE. Nobody's user, a root that cannot be written, no
+# capability, 512 MiB; the client outside asks it over the loopback address; SIGTERM ends
+# it with 0; terrane inside works, too. Exit code 77 (skipped) without TERRANE_HEAVY=1.
+set -euo pipefail
+
+# shellcheck source=tests/deploy/container_tools.sh
+source "$(dirname "${BASH_SOURCE[0]}")/container_tools.sh"
+containers_setup "$1"
+build_image server "${server_image}"
+build_image tools "${tools_image}"
+docker-compose --file "${root}/deploy/compose.yaml" --profile bench config --quiet
+
+for image in "${server_image}" "${tools_image}"; do
+  [[ "$(podman image inspect "${image}" --format '{{.User}}')" == 65532:65532 ]] || fail "${image} runs as somebody."
+done
+
+readonly ports=(50951 50952)
+container="$(podman run --detach --network host --read-only --cap-drop=all --security-opt no-new-privileges \
+  --memory 512m --pids-limit 256 "${server_image}" --listen "127.0.0.1:${ports[0]}" --http-listen "127.0.0.1:${ports[1]}" \
+  --workers 2 --log-format json)"
+trap 'podman rm --force "${container}" >/dev/null' EXIT
+wait_ready "http://127.0.0.1:${ports[1]}/readyz"
+
+process="$(podman inspect "${container}" --format '{{.State.Pid}}')"
+status="/proc/${process}/status"
+grep -q '^CapEff:\s*0*$' "${status}" || fail "the server has capabilities."
+grep -q '^CapBnd:\s*0*$' "${status}" || fail "the server may get capabilities."
+grep -q '^NoNewPrivs:\s*1$' "${status}" || fail "the server may get privileges."
+grep -q '^Uid:\s*65532\s' "${status}" || fail "the server is somebody."
+podman exec "${container}" touch /file 2>/dev/null && fail "the root can be written."
+
+same_heights "127.0.0.1:${ports[0]}" "$2"
+# The limit of the control group is the server's own.
+limit="$(curl --silent "http://127.0.0.1:${ports[1]}/metrics" | awk '$1 == "terrane_memory_limit_bytes" { printf "%.0f", $2 }')"
+((limit == 512 << 20)) || fail "the server takes its memory limit for ${limit} bytes."
+
+# What writes GeoTIFF and pictures is there, with all that it loads.
+tools=(podman run --rm --network none --read-only --cap-drop=all --tmpfs "/out:rw,mode=1777" "${tools_image}")
+"${tools[@]}" terrain --local --preset fbm/fig06b --out /out/a.tif
+"${tools[@]}" render --local --preset fbm/fig06b --out /out/a.png
+
+podman stop --time 40 "${container}" >/dev/null
+[[ "$(podman inspect "${container}" --format '{{.State.ExitCode}}')" == 0 ]] || fail "the server did not end with 0."
+echo "Built, run and stopped."

@@ -1,0 +1,100 @@
+# shellcheck shell=bash
+# What the container tests share; read by them with `source`. Nothing is kept outside of
+# BUILD_DIR/containers: neither images nor settings of podman and buildah.
+
+skip() {
+  echo "SKIPPED, NOTHING WAS CHECKED: $1" >&2
+  exit 77
+}
+
+fail() {
+  echo "FAILED: $1" >&2
+  exit 1
+}
+
+# Settings for root without a daemon, and without what a sandbox does not let it do: files
+# are copied instead of overlaid, limits are not raised. containers_setup BUILD_DIR.
+containers_setup() {
+  [[ "${TERRANE_HEAVY:-0}" == 1 ]] || skip "an image takes minutes and gigabytes; TERRANE_HEAVY=1 is not set."
+  ((EUID == 0)) || skip "only root can make a base image and run it here."
+  "${root}/deploy/install-packages.sh" apt-packages-heavy.txt
+  mkdir -p "$1/containers"
+  kept="$(cd "$1/containers" && pwd)"
+  cat >"${kept}/storage.conf" <<CONF
+[storage]
+driver = "vfs"
+graphroot = "${kept}/storage"
+runroot = "${kept}/run"
+CONF
+  cat >"${kept}/containers.conf" <<CONF
+[containers]
+default_ulimits = ["nofile=4096:4096", "nproc=1024:1024"]
+[engine]
+runtime = "runc"
+cgroup_manager = "cgroupfs"
+events_logger = "file"
+CONF
+  export CONTAINERS_STORAGE_CONF="${kept}/storage.conf" CONTAINERS_CONF="${kept}/containers.conf"
+}
+
+# Debian 12 as debootstrap makes it, with this machine's sources of packages, as the image
+# localhost/terrane-base. Made once.
+base_image() {
+  podman image exists localhost/terrane-base && return
+  local mirror folder="${kept}/base"
+  # shellcheck disable=SC2016 # apt's own word
+  mirror="$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Codename: bookworm' | head -1)"
+  [[ -n "${mirror}" ]] || skip "apt-get knows no source of Debian 12."
+  rm -rf "${folder}"
+  debootstrap --variant=minbase bookworm "${folder}" "${mirror}" >"${kept}/debootstrap.log" 2>&1 ||
+    skip "debootstrap cannot make a base: $(tail -1 "${kept}/debootstrap.log")"
+  if [[ -e /etc/apt/sources.list.d/debian.sources ]]; then
+    rm -f "${folder}/etc/apt/sources.list"
+    cp /etc/apt/sources.list.d/debian.sources "${folder}/etc/apt/sources.list.d/"
+  else
+    cp /etc/apt/sources.list "${folder}/etc/apt/"
+  fi
+  rm -rf "${folder}"/var/cache/apt/archives/*.deb "${folder}"/var/lib/apt/lists/*
+  tar --directory "${folder}" --create . | podman import - localhost/terrane-base >/dev/null
+  rm -rf "${folder}"
+}
+
+# Builds a target of deploy/container/Dockerfile, with this machine's ccache. Layers are
+# kept: without a change it takes seconds. build_image TARGET IMAGE.
+build_image() {
+  local volume=()
+  if command -v ccache >/dev/null; then volume=(--volume "$(ccache --get-config cache_dir):/ccache"); fi
+  base_image
+  buildah bud --isolation chroot --layers --build-arg BASE=localhost/terrane-base "${volume[@]}" \
+    --file "${root}/deploy/container/Dockerfile" --target "$1" --tag "$2" "${root}" >"${kept}/build-$1.log" 2>&1 || {
+    tail -40 "${kept}/build-$1.log" >&2
+    fail "the image was not built."
+  }
+  podman image inspect "$2" --format "$2 has {{.Size}} bytes, user {{.User}}"
+}
+
+# Waits for a 200 from an address of the server's HTTP port.
+wait_ready() {
+  local waited
+  for ((waited = 0; waited < 300; ++waited)); do
+    if curl --silent --fail --max-time 2 --output /dev/null "$1"; then return; fi
+    sleep 0.1
+  done
+  fail "$1 does not answer."
+}
+
+# Heights from the server at $1 are those that the terrane $2 makes here, byte for byte.
+same_heights() {
+  local folder world=(terrain --seed 7 --level 6 --window "0,0,700,500")
+  folder="$(mktemp -d)"
+  "$2" "${world[@]}" --server "$1" --out "${folder}/served.f32" >/dev/null
+  "$2" "${world[@]}" --local --out "${folder}/local.f32" >/dev/null
+  cmp "${folder}/served.f32" "${folder}/local.f32"
+  rm -r "${folder}"
+}
+
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+root="$(cd "${here}/../.." && pwd)"
+export server_image="localhost/terrane:0.1.0"
+export tools_image="localhost/terrane-tools:0.1.0"
+kept=

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Runs the Deployment that the chart renders, by podman: play_kube_test.sh BUILD_DIR
+# TERRANE. No cluster: podman makes the pod, the client asks it, and it goes again. Exit
+# code 77 (skipped) without TERRANE_HEAVY=1.
+set -euo pipefail
+
+# shellcheck source=tests/deploy/container_tools.sh
+source "$(dirname "${BASH_SOURCE[0]}")/container_tools.sh"
+containers_setup "$1"
+packages="$("${here}/../checks/npm_packages.sh" "$1" "${here}/package.json")"
+helm="$("${here}/kubernetes_tools.sh" "${packages}")/helm/helm"
+build_image server "${server_image}"
+
+folder="$(mktemp -d)"
+down() {
+  podman play kube --down "${folder}/deployment.yaml" >/dev/null 2>&1 || true
+  rm -rf "${folder}"
+}
+trap down EXIT
+"${helm}" template kube "${root}/deploy/helm/terrane" --kube-version 1.32 --show-only templates/deployment.yaml \
+  --set autoscaling.enabled=false,replicas=1,image.repository="${server_image%:*}",image.pullPolicy=Never \
+  --set resources.limits.memory=1Gi,resources.limits.cpu=2,server.preparedMib=256,server.rasterStoreMib=128 \
+  >"${folder}/deployment.yaml"
+
+# The network of the machine: the chart's ports, on which nobody else may listen.
+podman play kube --network host "${folder}/deployment.yaml"
+wait_ready "http://127.0.0.1:9464/readyz"
+podman ps --format '{{.Names}} {{.Status}}'
+same_heights "127.0.0.1:50051" "$2"
+
+server="$(podman ps --filter name=server --format '{{.ID}}')"
+process="$(podman inspect "${server}" --format '{{.State.Pid}}')"
+grep -q '^CapEff:\s*0*$' "/proc/${process}/status" || fail "the server has capabilities."
+grep -q '^Uid:\s*65532\s' "/proc/${process}/status" || fail "the server is somebody."
+podman exec "${server}" touch /file 2>/dev/null && fail "the root can be written."
+
+podman play kube --down "${folder}/deployment.yaml" >/dev/null
+[[ ! -e "/proc/${process}" ]] || fail "the server is still there."
+echo "The rendered Deployment ran and went."
