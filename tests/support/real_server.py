@@ -72,6 +72,11 @@ def wait_until(condition, seconds=10.0):
     return True
 
 
+def is_sanitized():
+    """Whether the server is built with AddressSanitizer."""
+    return "libasan" in subprocess.run(["ldd", SERVER], capture_output=True, text=True, check=True).stdout
+
+
 class RealServer:
     """One process: started at once, its log kept as JSON. Use as a context, or call kill()."""
 
