@@ -96,7 +96,7 @@ class StalledReaders(FaultTest):
         while not self.server.is_idle():
             self.assertLess(time.monotonic(), deadline, "the server never stalls")
         # Two tiles of 256 KiB are held for each, and what gRPC buffers of one.
-        self.assertLess(self.memory_growth(), 20 * (3 << 20))
+        self.assert_memory_flat(20 * (3 << 20))
         begin = time.monotonic()
         for _ in range(10):
             self.assert_golden()
@@ -128,13 +128,13 @@ class Deadlines(FaultTest):
         short = terrain_pb2.GetHeightsRequest(level=30, terrain=long.terrain, points=long.points[:1])
         # The one worker is busy with these, each nearly half a second, for longer than
         # the others may wait.
-        busy = [stub.GetHeights.future(long, timeout=15) for _ in range(5)]
+        busy = [stub.GetHeights.future(long, timeout=15) for _ in range(3)]
         self.assertTrue(wait_until(lambda: self.server.cpu_seconds() > self.cpu_before + 0.1))
         late = [stub.GetHeights.future(short, timeout=0.4) for _ in range(10)]
         for call in late:
             self.assertIn(call.code(), {grpc.StatusCode.DEADLINE_EXCEEDED, grpc.StatusCode.RESOURCE_EXHAUSTED})
         self.assertTrue(all(call.code() == grpc.StatusCode.OK for call in busy))
-        logged = [call for call in self.calls_in_log(15) if call["code"] != "OK"]
+        logged = [call for call in self.calls_in_log(13) if call["code"] != "OK"]
         self.assertEqual(len(logged), 10)
         self.assertEqual([call["generate_ms"] for call in logged], [0] * 10)
 

@@ -4,6 +4,7 @@ Programs that import this are called NAME TERRANE TERRANE_SERVER STUBS [unittest
 arguments] and end with main().
 """
 
+import functools
 import json
 import os
 import pathlib
@@ -72,6 +73,7 @@ def wait_until(condition, seconds=10.0):
     return True
 
 
+@functools.cache
 def is_sanitized():
     """Whether the server is built with AddressSanitizer."""
     return "libasan" in subprocess.run(["ldd", SERVER], capture_output=True, text=True, check=True).stdout
@@ -149,10 +151,10 @@ class RealServer:
     def health(self, channel, timeout=5):
         return channel.unary_unary(HEALTH_CHECK)(b"", timeout=timeout)
 
-    def golden_hash(self, channel, timeout=10):
+    def golden_hash(self, channel, **options):
         """The hash of the golden tile as it is served now, and the right one."""
         request, digest = golden_tile()
-        _, tile = self.terrain(channel).StreamTiles(request, timeout=timeout)
+        _, tile = self.terrain(channel).StreamTiles(request, **{"timeout": 10, **options})
         return fnv1a(tile.tile.data), digest
 
 
