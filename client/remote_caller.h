@@ -21,6 +21,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/channel_security.h"
 #include "client/status_details.h"
 
 namespace terrane::client {

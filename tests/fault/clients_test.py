@@ -1,0 +1,143 @@
+#!/usr/bin/python3
+"""Clients that go away, stall or have no time: see fault.py for what must hold after it.
+
+Usage: clients_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
+"""
+
+import collections
+import random
+import threading
+import time
+
+import grpc
+
+from fault import FaultTest
+from http2 import Http2Client
+from real_server import endless_request, main, terrain_pb2, tiles_request, wait_until
+
+STREAM_TILES = "/terrane.v1.TerrainService/StreamTiles"
+
+
+class ClientsThatGo(FaultTest):
+    FLAGS = ("--workers", "2")
+
+    def test_a_client_gone_mid_stream_stops_the_work(self):
+        channel = self.server.channel()
+        stream = self.server.terrain(channel).StreamTiles(endless_request(), timeout=15)
+        for _ in range(3):
+            next(stream)
+        channel.close()
+        (call,) = self.calls_in_log(1)
+        self.assertEqual(call["code"], "CANCELLED")
+        # The client took two tiles; what was made for it beyond those is what fits
+        # into the windows and sockets between the two, 64 tiles being 16 MiB.
+        self.assertLess(call["tiles"], 2 + 64)
+
+    def test_a_killed_connection_stops_the_work(self):
+        client = Http2Client(self.server)
+        client.start_call(STREAM_TILES, endless_request().SerializeToString())
+        client.receive_at_least(1 << 15)  # tiles are under way
+        client.abort()
+        (call,) = self.calls_in_log(1)
+        self.assertEqual(call["code"], "CANCELLED")
+
+    def test_every_call_of_a_cancel_storm_is_accounted_for(self):
+        """started = done + refused + cancelled + bad, each with one line in the log."""
+        calls_a_client, clients = 60, 4
+        outcomes = collections.Counter()
+        lock = threading.Lock()
+
+        def storm(number):
+            random_delay = random.Random(number)
+            stub = self.server.terrain(self.channel())
+            for index in range(calls_a_client):
+                kind = ("short", "endless", "bad", "endless")[index % 4]
+                request = endless_request() if kind == "endless" else tiles_request(window=(0, 0, 64, 64))
+                if kind == "bad":
+                    request.level = 999
+                stream = stub.StreamTiles(request, timeout=15)
+                if kind == "endless":
+                    stream.initial_metadata()  # the server has begun
+                    time.sleep(random_delay.uniform(0, 0.02))
+                    stream.cancel()
+                else:
+                    try:
+                        collections.deque(stream, maxlen=0)
+                    except grpc.RpcError:
+                        pass
+                with lock:
+                    outcomes[stream.code().name] += 1
+
+        threads = [threading.Thread(target=storm, args=(number,)) for number in range(clients)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        started = calls_a_client * clients
+        logged = self.calls_in_log(started)
+        self.assertEqual(len({call["request_id"] for call in logged}), started)
+        self.assertEqual(collections.Counter(call["code"] for call in logged), outcomes)
+        self.assertEqual(outcomes, {"OK": started // 4, "INVALID_ARGUMENT": started // 4, "CANCELLED": started // 2})
+
+
+class StalledReaders(FaultTest):
+    FLAGS = ("--workers", "2")
+
+    def test_stalled_readers_cost_little_and_hold_nobody_up(self):
+        readers = []
+        for seed in range(20):
+            # Room for everything that is asked for, so that only the socket stalls.
+            client = Http2Client(self.server, window=2**31 - 1)
+            self.addCleanup(client.close)
+            client.start_call(STREAM_TILES, endless_request(seed).SerializeToString())
+            readers.append(client)
+        # They stall when nothing is made any more.
+        deadline = time.monotonic() + 10
+        while not self.server.is_idle():
+            self.assertLess(time.monotonic(), deadline, "the server never stalls")
+        # Two tiles of 256 KiB are held for each, and what gRPC buffers of one.
+        self.assert_memory_flat(20 * (3 << 20))
+        begin = time.monotonic()
+        for _ in range(10):
+            self.assert_golden()
+        self.assertLess(time.monotonic() - begin, 5)
+        for client in readers:
+            client.abort()
+        codes = collections.Counter(call["code"] for call in self.calls_in_log(30))
+        self.assertEqual(codes, {"OK": 10, "CANCELLED": 20})
+
+
+class Deadlines(FaultTest):
+    FLAGS = ("--workers", "1")
+
+    def test_an_expired_stream_is_stopped(self):
+        stream = self.server.terrain(self.channel()).StreamTiles(endless_request(), timeout=0.5)
+        with self.assertRaises(grpc.RpcError) as raised:
+            collections.deque(stream, maxlen=0)
+        self.assertEqual(raised.exception.code(), grpc.StatusCode.DEADLINE_EXCEEDED)
+        (call,) = self.calls_in_log(1)
+        self.assertEqual(call["code"], "DEADLINE_EXCEEDED")
+        self.assertGreater(call["tiles"], 0)
+
+    def test_what_expires_in_the_queue_is_never_computed(self):
+        stub = self.server.terrain(self.channel())
+        long = terrain_pb2.GetHeightsRequest(level=30)
+        long.terrain.recipe.seed = 1
+        for index in range(10_000):
+            long.points.add(x=index * 7.3, y=index * 1.1)
+        short = terrain_pb2.GetHeightsRequest(level=30, terrain=long.terrain, points=long.points[:1])
+        # The one worker is busy with these, each nearly half a second, for longer than
+        # the others may wait.
+        busy = [stub.GetHeights.future(long, timeout=15) for _ in range(3)]
+        self.assertTrue(wait_until(lambda: self.server.cpu_seconds() > self.cpu_before + 0.1))
+        late = [stub.GetHeights.future(short, timeout=0.4) for _ in range(10)]
+        for call in late:
+            self.assertIn(call.code(), {grpc.StatusCode.DEADLINE_EXCEEDED, grpc.StatusCode.RESOURCE_EXHAUSTED})
+        self.assertTrue(all(call.code() == grpc.StatusCode.OK for call in busy))
+        logged = [call for call in self.calls_in_log(13) if call["code"] != "OK"]
+        self.assertEqual(len(logged), 10)
+        self.assertEqual([call["generate_ms"] for call in logged], [0] * 10)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+#!/usr/bin/python3
+"""Wall clocks that jump by an hour while calls run: see fault.py for what must hold after it.
+
+Usage: clock_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
+
+libfaketime moves the server's wall clock alone: deadlines, waits and drains are of the
+steady clock. It is put right before the frame looks at the server, for Abseil's waits are
+futexes of the wall clock, which libfaketime does not move: while its clock is behind, a
+waiting thread of gRPC wakes up again and again, as it would not with a clock that is set.
+"""
+
+import collections
+import glob
+import pathlib
+import tempfile
+import time
+
+import grpc
+
+from fault import FaultTest, wait_until
+from real_server import endless_request, is_sanitized, main, tiles_request
+
+LIBRARY = glob.glob("/usr/lib/*/faketime/libfaketimeMT.so.1")
+HOUR = 3600
+
+
+class ClockJumps(FaultTest):
+    def setUp(self):
+        super().setUp()
+        self.addCleanup(self.jump, 0)
+
+    def start_server(self, *flags, **options):
+        if not LIBRARY:
+            self.skipTest("there is no libfaketime: install the package faketime")
+        if is_sanitized():
+            self.skipTest("AddressSanitizer wants to be the first library, and so does libfaketime")
+        clock = tempfile.NamedTemporaryFile(prefix="terrane-clock-")
+        self.addCleanup(clock.close)
+        self.clock = pathlib.Path(clock.name)
+        self.jump(0)
+        return super().start_server(*flags, **options, env={
+            "LD_PRELOAD": LIBRARY[0], "FAKETIME_TIMESTAMP_FILE": clock.name, "FAKETIME_NO_CACHE": "1",
+            "FAKETIME_DONT_FAKE_MONOTONIC": "1", "DONT_FAKE_MONOTONIC": "1"})
+
+    def jump(self, seconds):
+        self.clock.write_text(f"{seconds:+d}\n")
+
+    def log_time(self):
+        """The server's own wall clock, by the log line of a call made now."""
+        before = len(self.server.calls())
+        self.assert_golden()
+        self.assertTrue(wait_until(lambda: len(self.server.calls()) > before))
+        return self.server.calls()[-1]["time"]
+
+    def test_the_clock_of_the_server_does_jump(self):
+        """Without that the other tests would show nothing."""
+        before = self.log_time()
+        self.jump(48 * HOUR)
+        self.assertNotEqual(before[:10], self.log_time()[:10])
+
+    def test_running_calls_outlive_a_jump(self):
+        for seconds in (HOUR, -HOUR, 0):
+            with self.subTest(seconds=seconds):
+                stub = self.server.terrain(self.channel())
+                stream = stub.StreamTiles(tiles_request(level=30, window=(0, 0, 3000, 3000), tile_size=100), timeout=10)
+                next(stream)
+                self.jump(seconds)
+                self.assertEqual(sum(1 for _ in stream), 900)
+
+    def test_a_deadline_is_as_long_as_it_was(self):
+        for seconds in (HOUR, -HOUR):
+            with self.subTest(seconds=seconds):
+                stream = self.server.terrain(self.channel()).StreamTiles(endless_request(), timeout=1)
+                next(stream)
+                begin = time.monotonic()
+                self.jump(seconds)
+                with self.assertRaises(grpc.RpcError) as raised:
+                    collections.deque(stream, maxlen=0)
+                self.assertEqual(raised.exception.code(), grpc.StatusCode.DEADLINE_EXCEEDED)
+                self.assertTrue(0.5 < time.monotonic() - begin < 5)
+                self.assertTrue(wait_until(lambda: self.server.calls()[-1]["code"] == "DEADLINE_EXCEEDED"))
+
+    def test_a_drain_lets_calls_end_whatever_the_clock(self):
+        for seconds in (HOUR, -HOUR):
+            with self.subTest(seconds=seconds):
+                server = self.start_server("--drain-seconds", "10")
+                stub = server.terrain(server.channel())
+                stream = stub.StreamTiles(tiles_request(level=30, window=(0, 0, 3000, 3000), tile_size=100), timeout=10)
+                next(stream)
+                server.terminate()
+                self.jump(seconds)
+                self.assertEqual(sum(1 for _ in stream), 900)
+                self.assertEqual(server.process.wait(10), 0)
+
+
+if __name__ == "__main__":
+    main()

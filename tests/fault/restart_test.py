@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+"""Servers that end, gently and not, under load.
+
+Usage: restart_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
+"""
+
+import filecmp
+import json
+import pathlib
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+
+import grpc
+
+from fault import TimedTest
+from real_server import HEALTH_WATCH, NOT_SERVING, SERVING, TERRANE, main, tiles_request, wait_until
+
+
+class Load:
+    """Clients that call again and again until health says NOT_SERVING; every outcome."""
+
+    def __init__(self, server, clients=3):
+        self._server = server
+        self.serving = True
+        self.done = self.refused = 0
+        self.failed = []
+        self._lock = threading.Lock()
+        self._threads = [threading.Thread(target=self._watch)]
+        self._threads += [threading.Thread(target=self._call) for _ in range(clients)]
+        for thread in self._threads:
+            thread.start()
+
+    def _watch(self):
+        with self._server.channel() as channel:
+            watch = channel.unary_stream(HEALTH_WATCH)(b"", timeout=15)
+            for answer in watch:
+                if answer != SERVING:
+                    self.serving = answer != NOT_SERVING
+                    break
+            watch.cancel()
+
+    def _call(self):
+        with self._server.channel() as channel:
+            stub = self._server.terrain(channel)
+            while self.serving:
+                try:
+                    messages = list(stub.StreamTiles(tiles_request(window=(0, 0, 200, 200), tile_size=50), timeout=10))
+                    assert len(messages) == 17
+                    with self._lock:
+                        self.done += 1
+                except grpc.RpcError as error:
+                    with self._lock:
+                        # Refused by a port that is closed: the server never had it.
+                        if not self.serving and error.code() == grpc.StatusCode.UNAVAILABLE:
+                            self.refused += 1
+                        else:
+                            self.failed.append(error)
+
+    def join(self):
+        for thread in self._threads:
+            thread.join()
+
+
+class GentleEnd(TimedTest):
+    def long_streams(self, server, count, tiles_a_side):
+        """Streams under way: their messages so far are on their way, the rest is up to the server."""
+        streams = []
+        for seed in range(count):
+            channel = server.channel()
+            self.addCleanup(channel.close)
+            # Costly tiles in small messages: half a second of one core each stream.
+            request = tiles_request(seed=seed, level=30, tiles=(0, 0, tiles_a_side, tiles_a_side), tile_size=65)
+            stream = server.terrain(channel).StreamTiles(request, timeout=15)
+            next(stream)
+            streams.append(stream)
+        return streams
+
+    def test_sigterm_under_load_fails_no_call(self):
+        server = self.start_server("--workers", "2", "--drain-seconds", "10")
+        load = Load(server)
+        self.assertTrue(wait_until(lambda: load.done > 5))
+        streams = self.long_streams(server, 4, 24)
+        server.terminate()
+        self.assertTrue(wait_until(lambda: not load.serving), "health never said NOT_SERVING")
+        for stream in streams:
+            self.assertEqual(sum(message.HasField("tile") for message in stream), 24 * 24)
+        load.join()
+        self.assertEqual(server.process.wait(12), 0)
+        self.assertEqual(load.failed, [])
+        codes = {call["code"] for call in server.calls()}
+        self.assertEqual(codes, {"OK"})
+
+    def test_a_drain_that_takes_too_long_is_cut(self):
+        server = self.start_server("--workers", "1", "--drain-seconds", "1")
+        (stream,) = self.long_streams(server, 1, 4_000)
+        begin = time.monotonic()
+        server.terminate()
+        with self.assertRaises(grpc.RpcError):
+            for _ in stream:
+                pass
+        self.assertEqual(server.process.wait(10), 0)
+        self.assertGreater(time.monotonic() - begin, 1)
+
+    def test_a_second_signal_ends_at_once(self):
+        server = self.start_server("--drain-seconds", "15")
+        self.long_streams(server, 1, 4_000)
+        server.terminate()
+        self.assertTrue(wait_until(lambda: "draining" in server.log_text()))
+        server.terminate()
+        self.assertEqual(server.process.wait(5), 1)
+
+
+class KilledServer(TimedTest):
+    CHOICE = ["terrain", "--seed", "11", "--level", "30", "--window", "0,0,4096,4096", "--tile-size", "256"]
+
+    def setUp(self):
+        super().setUp()
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def test_a_client_resumes_with_the_restarted_server(self):
+        first = self.start_server("--workers", "1")
+        out, alone = self.folder / "resumed.f32", self.folder / "alone.f32"
+        client = subprocess.Popen([TERRANE, *self.CHOICE, "--server", first.address, "--out", out, "--progress", "json"],
+                                  stderr=subprocess.PIPE, text=True)
+        self.addCleanup(client.stderr.close)
+        self.addCleanup(client.kill)
+        begun = json.loads(client.stderr.readline())  # printed with the first tile
+        self.assertLess(max(v for k, v in begun.items() if k not in ("total", "seconds")), begun["total"])
+        first.process.send_signal(signal.SIGKILL)
+        first.process.wait(5)
+        self.assertIsNone(client.poll())
+        second = self.start_server(listen=first.address)
+        self.assertEqual(client.wait(15), 0, client.stderr.read())
+        (call,) = second.calls()
+        self.assertLess(call["tiles"], 256)  # only what was missing
+        subprocess.run([TERRANE, *self.CHOICE, "--local", "--out", alone], check=True, capture_output=True)
+        self.assertTrue(filecmp.cmp(out, alone, shallow=False))
+
+    def test_a_client_of_a_server_that_stays_away_gives_up_cleanly(self):
+        server = self.start_server("--workers", "1")
+        out = self.folder / "never.f32"
+        client = subprocess.Popen([TERRANE, *self.CHOICE, "--server", server.address, "--out", out, "--progress", "json"],
+                                  stderr=subprocess.PIPE, text=True)
+        self.addCleanup(client.stderr.close)
+        self.addCleanup(client.kill)
+        client.stderr.readline()
+        server.process.send_signal(signal.SIGKILL)
+        self.assertEqual(client.wait(19), 4)
+        self.assertIn("does not answer", client.stderr.read())
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+if __name__ == "__main__":
+    main()
