@@ -199,6 +199,12 @@ class TokenTest(EdgeTest):
         for changes in [{}, {"aud": ["other", AUDIENCE]}, {"scope": "a terrane.read b"}, {"nbf": now}, {"exp": now - 10}, {"nbf": now + 10}]:
             self.assertEqual(self.call(self.token(**changes))[0], StatusCode.OK, changes)
 
+    def test_a_known_token_expires_all_the_same(self):
+        token = self.token(exp=int(time.time()) - 27)
+        self.assertEqual(self.call(token)[0], StatusCode.OK)
+        time.sleep(5)
+        self.assert_refused(self.call(token), StatusCode.UNAUTHENTICATED, "TOKEN_INVALID")
+
     def hand_made(self, header, payload, secret=b""):
         """A token with an HMAC, or none, whatever the header says."""
         def encode(data):
