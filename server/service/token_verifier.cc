@@ -5,15 +5,19 @@
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
+#include <openssl/sha.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <fstream>
 #include <iterator>
 #include <jwt/jwt.hpp>
-#include <memory>
+#include <mutex>
+#include <optional>
 #include <sstream>
+#include <unordered_map>
 
 #include "server/actor/error_reason.h"
 
@@ -102,6 +106,7 @@ absl::StatusOr<TokenClaims> ReadClaims(const Json& claims,
     return Invalid("is for another audience (aud)");
   }
   TokenClaims result;
+  result.expires = expires->get<double>();
   result.subject = StringOf(claims, "sub");
   if (result.subject.empty() || result.subject.size() > kMaxSubjectBytes) {
     return Invalid("has no subject (sub) of 1 to 256 bytes");
@@ -111,7 +116,49 @@ absl::StatusOr<TokenClaims> ReadClaims(const Json& claims,
   return result;
 }
 
+std::string Digest(std::string_view token) {
+  std::string digest(SHA256_DIGEST_LENGTH, '\0');
+  SHA256(reinterpret_cast<const unsigned char*>(token.data()), token.size(),
+         reinterpret_cast<unsigned char*>(digest.data()));
+  return digest;
+}
+
 }  // namespace
+
+// Claims by the digest of their token. Forgets all when it is full.
+class TokenVerifier::KnownTokens {
+ public:
+  std::optional<TokenClaims> Find(const std::string& digest) {
+    const double now = std::chrono::duration<double>(
+                           std::chrono::system_clock::now().time_since_epoch())
+                           .count();
+    std::lock_guard lock(mutex_);
+    const auto found = claims_.find(digest);
+    if (found == claims_.end() || now > found->second.expires) {
+      return std::nullopt;
+    }
+    return found->second;
+  }
+
+  void Keep(const std::string& digest, const TokenClaims& claims) {
+    std::lock_guard lock(mutex_);
+    if (claims_.size() >= kMost) claims_.clear();
+    claims_.insert_or_assign(digest, claims);
+  }
+
+ private:
+  static constexpr std::size_t kMost = 1024;
+
+  std::mutex mutex_;
+  std::unordered_map<std::string, TokenClaims> claims_;
+};
+
+TokenVerifier::TokenVerifier(TokenOptions options, std::string key,
+                             std::string algorithm)
+    : options_(std::move(options)),
+      key_(std::move(key)),
+      algorithm_(std::move(algorithm)),
+      known_(std::make_shared<KnownTokens>()) {}
 
 absl::StatusOr<TokenVerifier> TokenVerifier::Load(const TokenOptions& options) {
   const std::string& name = options.key_file;
@@ -134,6 +181,14 @@ absl::StatusOr<TokenVerifier> TokenVerifier::Load(const TokenOptions& options) {
 
 absl::StatusOr<TokenClaims> TokenVerifier::Verify(
     std::string_view token) const {
+  const std::string digest = Digest(token);
+  if (auto known = known_->Find(digest)) return *std::move(known);
+  absl::StatusOr<TokenClaims> claims = Check(token);
+  if (claims.ok()) known_->Keep(digest, *claims);
+  return claims;
+}
+
+absl::StatusOr<TokenClaims> TokenVerifier::Check(std::string_view token) const {
   if (!HasForm(token)) return Invalid("is malformed");
   try {
     std::error_code error;

@@ -159,7 +159,7 @@ class ConnectionsTest(unittest.TestCase):
     def test_a_drain_takes_no_connection_and_lets_streams_end(self):
         with self.served() as server, open_channel(server) as channel:
             stream = endless(channel)
-            server.process.terminate()
+            server.drain()
 
             def is_refused():
                 try:

@@ -22,15 +22,21 @@ class RealServer:
         line = self.process.stdout.readline()
         assert line.startswith("listening on "), self.log()
         self.port = int(line.rsplit(":", 1)[1])
+        self.draining = False
         self.address = f"127.0.0.1:{self.port}"
 
     def log(self):
         return self.log_file.read_text(encoding="utf-8")
 
-    def stop(self):
-        """The exit code after SIGTERM."""
-        if self.process.poll() is None:
+    def drain(self):
+        """Sends SIGTERM, once: a second one would end the drain."""
+        if not self.draining and self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
+        self.draining = True
+
+    def stop(self):
+        """The exit code after a drain."""
+        self.drain()
         code = self.process.wait(30)
         self.process.stdout.close()
         return code
