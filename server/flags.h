@@ -17,6 +17,7 @@ struct Flags {
   std::int64_t raster_store_mib = 1024;
   std::int64_t prepared_mib = 2048;
   int drain_seconds = 30;
+  std::int64_t memory_limit_mib = 0;
   std::string log_level = "info";
   std::string log_format = "text";
 };

@@ -8,7 +8,9 @@
 
 #include "server/actor/actor.h"
 #include "server/service/buffer_pool.h"
-#include "server/service/call_log.h"
+#include "server/service/call_book.h"
+#include "server/service/call_record.h"
+#include "server/service/memory_watch.h"
 #include "server/service/stream_gate.h"
 #include "server/service/worker_pool.h"
 
@@ -19,13 +21,14 @@ struct ServiceParts {
   Actor* actor = nullptr;
   WorkerPool* workers = nullptr;
   StreamGate* gate = nullptr;
-  CallLog* log = nullptr;
+  MemoryWatch* memory = nullptr;
+  CallBook* calls = nullptr;
   std::shared_ptr<BufferPool> buffers;
 };
 
 // Begins the record of a call. Its id is the client's x-request-id (letters,
 // digits, '.', '_', '-'; at most 64), else a new one; the client gets it back
-// in the initial metadata.
+// in the initial metadata. Its trace is that of the client's traceparent.
 CallRecord BeginCall(const char* method, grpc::CallbackServerContext* context);
 
 // The status of a call that gRPC cancelled: by the client, or by its deadline.

@@ -45,7 +45,7 @@ void PrepareCall::Run() {
 
   std::unique_lock lock(mutex_);
   running_ = false;
-  record_.queued = start - begin_;
+  record_.queued = start - record_.begin;
   record_.generated = Clock::now() - start;
   if (outcome.ok()) record_.recipe_hash = outcome->recipe_hash();
   outcome_ = std::move(outcome);
@@ -109,7 +109,7 @@ void PrepareCall::OnCancel() {
 }
 
 void PrepareCall::OnDone() {
-  parts_.log->Write(record_);
+  parts_.calls->Close(&record_);
   self_.reset();
 }
 

@@ -16,15 +16,33 @@ constexpr std::size_t kWaitingPerActive = 4;
 // Buffers of tiles kept for the next ones.
 constexpr std::size_t kBufferPoolBytes = std::size_t{64} << 20;
 
+constexpr const char* kServices[] = {v1::TerrainService::service_full_name(),
+                                     v1::SurfaceService::service_full_name(),
+                                     v1::TreeService::service_full_name(),
+                                     v1::FlowerService::service_full_name(),
+                                     v1::RenderService::service_full_name(),
+                                     v1::RasterService::service_full_name(),
+                                     v1::SpotTableService::service_full_name(),
+                                     v1::InfoService::service_full_name()};
+
 }  // namespace
 
 Server::Server(const ServerOptions& options, Actor* actor, CallLog* log)
-    : gate_(static_cast<std::size_t>(options.limits.max_concurrent_streams),
+    : memory_(options.memory_limit_bytes),
+      gate_(static_cast<std::size_t>(options.limits.max_concurrent_streams),
             kWaitingPerActive * static_cast<std::size_t>(
                                     options.limits.max_concurrent_streams)),
       workers_(options.workers),
-      parts_{actor, &workers_, &gate_, log,
-             std::make_shared<BufferPool>(kBufferPoolBytes)},
+      metrics_(kServices, Gauges()),
+      calls_(log, &metrics_),
+      parts_{
+          .actor = actor,
+          .workers = &workers_,
+          .gate = &gate_,
+          .memory = &memory_,
+          .calls = &calls_,
+          .buffers = std::make_shared<BufferPool>(kBufferPoolBytes),
+      },
       terrain_service_(parts_),
       surface_service_(parts_),
       tree_service_(parts_),
@@ -66,7 +84,43 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
     return absl::UnavailableError("cannot listen on " + options.listen);
   }
   server->SetServing(true);
+  if (!options.http_listen.empty()) {
+    auto http = HttpEndpoint::Start(options.http_listen, server->Pages());
+    if (!http.ok()) return http.status();
+    server->http_ = *std::move(http);
+  }
   return server;
+}
+
+ServerGauges Server::Gauges() {
+  ServerGauges gauges;
+  gauges.workers = [this] { return workers_.load().workers; };
+  gauges.workers_busy = [this] { return workers_.load().busy; };
+  gauges.memory_bytes = [this] {
+    return static_cast<double>(memory_.ResidentBytes());
+  };
+  if (const auto limit = memory_.limit_bytes()) {
+    gauges.memory_limit_bytes = [limit] { return static_cast<double>(*limit); };
+  }
+  return gauges;
+}
+
+HttpPages Server::Pages() {
+  return {{"/livez", [] { return HttpReply{.body = "ok\n"}; }},
+          {"/readyz",
+           [this] {
+             return ready_ ? HttpReply{.body = "ok\n"}
+                           : HttpReply{.status = 503, .body = "draining\n"};
+           }},
+          {"/metrics", [this] {
+             return HttpReply{.content_type = kMetricsContentType,
+                              .body = metrics_.Text()};
+           }}};
+}
+
+std::optional<int> Server::http_port() const {
+  if (http_ == nullptr) return std::nullopt;
+  return http_->port();
 }
 
 Server::~Server() {
@@ -75,16 +129,9 @@ Server::~Server() {
 
 void Server::SetServing(bool serving) {
   grpc::HealthCheckServiceInterface* health = server_->GetHealthCheckService();
-  for (const char* name : {"", v1::TerrainService::service_full_name(),
-                           v1::SurfaceService::service_full_name(),
-                           v1::TreeService::service_full_name(),
-                           v1::FlowerService::service_full_name(),
-                           v1::RenderService::service_full_name(),
-                           v1::RasterService::service_full_name(),
-                           v1::SpotTableService::service_full_name(),
-                           v1::InfoService::service_full_name()}) {
-    health->SetServingStatus(name, serving);
-  }
+  health->SetServingStatus("", serving);
+  for (const char* name : kServices) health->SetServingStatus(name, serving);
+  ready_ = serving;
 }
 
 void Server::Drain(std::chrono::milliseconds grace,

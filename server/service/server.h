@@ -1,5 +1,5 @@
-// Server: the services of an Actor on a gRPC port, with health and an ordered
-// end.
+// Server: the services of an Actor on a gRPC port, with health, probes, metrics
+// and an ordered end.
 //
 // Threads: Start, Drain and the destructor from one thread; calls are served on
 // gRPC's threads and generated on the worker pool's.
@@ -9,15 +9,22 @@
 #include <grpcpp/channel.h>
 #include <grpcpp/server.h>
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "server/actor/actor.h"
+#include "server/service/call_book.h"
 #include "server/service/call_context.h"
 #include "server/service/flower_service.h"
+#include "server/service/http_endpoint.h"
 #include "server/service/info_service.h"
+#include "server/service/memory_watch.h"
+#include "server/service/metrics.h"
 #include "server/service/raster_service.h"
 #include "server/service/render_service.h"
 #include "server/service/spot_table_service.h"
@@ -32,12 +39,16 @@ struct ServerOptions {
   Limits limits;
   int workers = 1;
   bool reflection = false;
+  // Where probes and metrics are answered over plain HTTP; empty: nowhere.
+  std::string http_listen;
+  // Most memory the process is to take; without it, memory refuses nothing.
+  std::optional<std::int64_t> memory_limit_bytes;
 };
 
 class Server {
  public:
   // Serves `actor` and writes a line per call to `log`; both outlive the
-  // server. Errors: UNAVAILABLE when the address cannot be listened on.
+  // server. Errors: UNAVAILABLE when an address cannot be listened on.
   static absl::StatusOr<std::unique_ptr<Server>> Start(
       const ServerOptions& options, Actor* actor, CallLog* log);
   // Cancels what is still running.
@@ -47,8 +58,11 @@ class Server {
 
   // The port that was taken.
   int port() const { return port_; }
+  // The same of http_listen; nothing when it was empty.
+  std::optional<int> http_port() const;
 
-  // The ordered end: health says NOT_SERVING, `grace` lets balancers see it,
+  // The ordered end: health says NOT_SERVING and /readyz 503, `grace` lets
+  // balancers see it,
   // then no new call is taken and the running ones have `drain` to end before
   // they are cancelled.
   void Drain(std::chrono::milliseconds grace, std::chrono::milliseconds drain);
@@ -56,10 +70,16 @@ class Server {
  private:
   Server(const ServerOptions& options, Actor* actor, CallLog* log);
 
+  ServerGauges Gauges();
+  // /livez, /readyz and /metrics.
+  HttpPages Pages();
   void SetServing(bool serving);
 
+  MemoryWatch memory_;
   StreamGate gate_;
   WorkerPool workers_;
+  Metrics metrics_;
+  CallBook calls_;
   ServiceParts parts_;
   TerrainServiceImpl terrain_service_;
   SurfaceServiceImpl surface_service_;
@@ -70,8 +90,10 @@ class Server {
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;
   int port_ = 0;
-  // Last, so that it goes first: no call outlives what it works with.
+  std::atomic<bool> ready_ = false;
+  // Last, so that they go first: no call outlives what it works with.
   std::unique_ptr<grpc::Server> server_;
+  std::unique_ptr<HttpEndpoint> http_;
 };
 
 }  // namespace terrane::server

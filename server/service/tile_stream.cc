@@ -34,16 +34,29 @@ TileStream::TileStream(const ServiceParts& parts, const char* method,
       record_(BeginCall(method, context)) {}
 
 void TileStream::EnterGate() {
-  // Locked, so that the task cannot end the stream before the ticket is kept.
-  std::unique_lock lock(mutex_);
-  queued_ = true;
-  ticket_ = parts_.gate->Enter([stream = self_] { Submit(stream); });
-  if (ticket_.has_value()) return;
-  queued_ = false;
-  const absl::Status refusal =
-      RetryLaterError("too many streams are waiting; try again", kRetryDelay);
+  if (parts_.memory->Tight()) {
+    return Refuse(Refusal::kMemory,
+                  RetryLaterError("the server is short of memory; try again",
+                                  kRetryDelay));
+  }
+  {
+    // Locked, so that the task cannot end the stream before the ticket is kept.
+    std::lock_guard lock(mutex_);
+    queued_ = true;
+    ticket_ = parts_.gate->Enter([stream = self_] { Submit(stream); });
+    if (ticket_.has_value()) return;
+    queued_ = false;
+  }
+  Refuse(
+      Refusal::kStreams,
+      RetryLaterError("too many streams are waiting; try again", kRetryDelay));
+}
+
+void TileStream::Refuse(Refusal reason, const absl::Status& refusal) {
   context_->AddTrailingMetadata("grpc-retry-pushback-ms",
                                 std::to_string(kRetryDelay.count()));
+  std::unique_lock lock(mutex_);
+  record_.refusal = reason;
   EndWith(refusal);
   Advance(std::move(lock));
 }
@@ -100,13 +113,17 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
     outgoing_ = *std::move(ahead_);
     ahead_.reset();
     writing_ = true;
+    write_begin_ = Clock::now();
   }
   const bool generate = MayGenerate() && opened_;
   if (generate) queued_ = true;
   if (all_made_ && !ahead_.has_value() && !writing_) EndWith(absl::OkStatus());
   finished_ = end_.has_value() && !writing_ && !running_;
   const bool finish = finished_;
-  if (finish) record_.status = *end_;
+  if (finish) {
+    record_.status = *end_;
+    record_.sending = sending_;
+  }
   // Once unlocked the stream can end at any time, and then lets go of itself.
   const std::shared_ptr<TileStream> keep = self_;
   lock.unlock();
@@ -118,6 +135,7 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
 void TileStream::OnWriteDone(bool ok) {
   std::unique_lock lock(mutex_);
   writing_ = false;
+  sending_ += Clock::now() - write_begin_;
   if (!ok) EndWith(CancelStatus(*context_));
   Advance(std::move(lock));
 }
@@ -131,7 +149,7 @@ void TileStream::OnCancel() {
 
 void TileStream::OnDone() {
   if (ticket_.has_value()) parts_.gate->Leave(*ticket_);
-  parts_.log->Write(record_);
+  parts_.calls->Close(&record_);
   self_.reset();
 }
 

@@ -42,13 +42,15 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   void OnDone() override;
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = CallRecord::Clock;
 
   TileStream(const ServiceParts& parts, const char* method,
              grpc::CallbackServerContext* context,
              std::unique_ptr<StreamSource> source);
 
   void EnterGate();
+  // Ends a stream that has not begun.
+  void Refuse(Refusal reason, const absl::Status& refusal);
   // Queues the next task: opening the source first, then a message each. The
   // stream may end at any time from here on, so the task brings its own share
   // of it.
@@ -78,6 +80,8 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   bool queued_ = false;                    // a task waits for a worker
   bool running_ = false;                   // a worker is at it
   bool writing_ = false;
+  Clock::time_point write_begin_;
+  std::chrono::nanoseconds sending_{0};  // over all writes
   bool opened_ = false;
   bool all_made_ = false;
   std::optional<absl::Status> end_;  // set early by a failure or OnCancel

@@ -27,6 +27,11 @@ void WorkerPool::Submit(Task task) {
   wake_.notify_one();
 }
 
+WorkerPool::Load WorkerPool::load() const {
+  std::lock_guard lock(mutex_);
+  return {static_cast<int>(threads_.size()), busy_};
+}
+
 void WorkerPool::Run() {
   core::TileScratch scratch;
   std::unique_lock lock(mutex_);
@@ -36,10 +41,12 @@ void WorkerPool::Run() {
     {
       const Task task = std::move(tasks_.front());
       tasks_.pop_front();
+      ++busy_;
       lock.unlock();
       task(&scratch);
     }  // what the task held goes without the lock
     lock.lock();
+    --busy_;
   }
 }
 

@@ -26,19 +26,26 @@ class WorkerPool {
  public:
   using Task = std::function<void(core::TileScratch*)>;
 
+  struct Load {
+    int workers = 0;
+    int busy = 0;  // workers at a task
+  };
+
   explicit WorkerPool(int threads);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   void Submit(Task task);
+  Load load() const;
 
  private:
   void Run();
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<Task> tasks_;
+  int busy_ = 0;
   bool stopping_ = false;
   std::vector<std::thread> threads_;
 };
