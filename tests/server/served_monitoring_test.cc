@@ -332,18 +332,20 @@ TEST(ServedLogTest, LinesTellTraceTimesAndReason) {
 // A reader that takes its time costs no work; the line says where time went.
 TEST(ServedLogTest, SlowReadersShowInTheTimeOfSending) {
   FakeActor actor;
-  actor.tiles().tile_bytes = 8 << 20;
+  // More than gRPC and the kernel take in for a client that does not read.
+  actor.tiles().tile_bytes = 32 << 20;
   Served served(&actor);
   grpc::ClientContext context;
-  const auto reader = served.terrain->StreamTiles(&context, Tiles(4));
+  const auto reader = served.terrain->StreamTiles(&context, Tiles(2));
+  // The second tile is begun when the first is being written.
+  ASSERT_TRUE(Eventually([&] { return actor.tiles().started == 2; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   for (v1::StreamTilesResponse message; reader->Read(&message);) {
   }
   EXPECT_TRUE(reader->Finish().ok());
   const auto lines = CallLines(served.StopAndReadLog());
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_GE(lines[0]["send_ms"], 200);
-  EXPECT_LT(lines[0]["generate_ms"], lines[0]["send_ms"]);
+  EXPECT_GE(lines[0]["send_ms"], 300);
 }
 
 TEST(ServedLogTest, ReasonsOfRefusals) {
