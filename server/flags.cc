@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "server/service/cpu_quota.h"
+#include "server/service/memory_watch.h"
 
 namespace terrane::server {
 namespace {
@@ -167,6 +168,21 @@ void AddLimitFlags(CLI::App* app, Flags* flags) {
       ->capture_default_str();
 }
 
+void AddMonitoringFlags(CLI::App* app, Flags* flags) {
+  constexpr char kGroup[] = "Monitoring";
+  app->add_option(
+         "--http-listen", flags->server.http_listen,
+         "Address and port for /livez, /readyz and /metrics over plain "
+         "HTTP; off unless given")
+      ->group(kGroup);
+  app->add_option("--memory-limit-mib", flags->memory_limit_mib,
+                  "Memory of the process, in MiB: above nine tenths of it new "
+                  "streams are refused; 0: the limit of the control group")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 30))
+      ->capture_default_str()
+      ->group(kGroup);
+}
+
 void AddLogFlags(CLI::App* app, Flags* flags) {
   app->option_defaults()->group("Logs");
   app->add_option("--log-level", flags->log_level, "Least level that is logged")
@@ -184,12 +200,24 @@ std::optional<std::string> Conflict(const Flags& flags) {
   if (listen.find(':') == std::string::npos) {
     return "--listen must be ADDRESS:PORT, got " + listen;
   }
+  const std::string& http_listen = flags.server.http_listen;
+  if (!http_listen.empty() && http_listen.find(':') == std::string::npos) {
+    return "--http-listen must be ADDRESS:PORT, got " + http_listen;
+  }
   if (!flags.server.tls.on() && !flags.insecure && !IsLoopback(listen)) {
     return "--listen " + listen +
            " is reachable from other machines; use 127.0.0.1, or --tls-cert "
            "and --tls-key, or add --insecure to serve it without TLS";
   }
   return std::nullopt;
+}
+
+// The tighter one of what the flag and the control group say.
+std::optional<std::int64_t> MemoryLimit(const Flags& flags) {
+  const std::optional<std::int64_t> group_limit = ControlGroupMemoryLimit();
+  if (flags.memory_limit_mib == 0) return group_limit;
+  const std::int64_t limit = flags.memory_limit_mib << 20;
+  return std::min(limit, group_limit.value_or(limit));
 }
 
 // What follows from the flags.
@@ -206,6 +234,7 @@ void Resolve(Flags* flags) {
   flags->server.patience = std::chrono::seconds(flags->patience_seconds);
   flags->server.connections.max_age =
       std::chrono::seconds(flags->max_age_seconds);
+  flags->server.memory_limit_bytes = MemoryLimit(*flags);
   flags->server.workers = flags->workers > 0 ? flags->workers : UsableCpus();
 }
 
@@ -221,6 +250,7 @@ std::optional<int> ParseFlags(int argc, char** argv, Flags* flags) {
   AddSecurityFlags(&app, flags);
   AddWorkFlags(&app, flags);
   AddLimitFlags(&app, flags);
+  AddMonitoringFlags(&app, flags);
   AddLogFlags(&app, flags);
   app.set_version_flag("--version", "terrane-server " TERRANE_VERSION);
   app.footer(Footer());

@@ -20,6 +20,7 @@ struct Flags {
   int patience_seconds = 60;
   int stream_idle_seconds = 60;
   int drain_seconds = 30;
+  std::int64_t memory_limit_mib = 0;
   std::string log_level = "info";
   std::string log_format = "text";
 };

@@ -1,8 +1,9 @@
 // terrane-server: serves Terrane's generators over gRPC.
 //
-// Standard output holds one line, "listening on ADDRESS:PORT"; logs go to
-// standard error. SIGTERM and SIGINT drain and exit 0; a second one ends at
-// once. Exit codes: 0 ok, 1 error, 2 usage.
+// Standard output holds the line "listening on ADDRESS:PORT", and with
+// --http-listen a second one, "http on ADDRESS:PORT"; logs go to standard
+// error. SIGTERM and SIGINT drain and exit 0; a second one ends at once. Exit
+// codes: 0 ok, 1 error, 2 usage.
 #include <pthread.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
@@ -60,6 +61,12 @@ int Serve(const Flags& flags) {
       HostOf(flags.server.listen) + ":" + std::to_string((*server)->port());
   std::cout << "listening on " << address << std::endl;
   log.Event("listening", address);
+  if (const auto http_port = (*server)->http_port()) {
+    const std::string http_address =
+        HostOf(flags.server.http_listen) + ":" + std::to_string(*http_port);
+    std::cout << "http on " << http_address << std::endl;
+    log.Event("http", http_address);
+  }
 
   int signal = 0;
   sigwait(&signals, &signal);

@@ -162,8 +162,9 @@ absl::Status Acceptor::ListenOn(const std::string& host,
 
 Acceptor::~Acceptor() { Stop(); }
 
-void Acceptor::Start(TakeConnection take) {
+void Acceptor::Start(TakeConnection take, OnRefused on_refused) {
   take_ = std::move(take);
+  on_refused_ = std::move(on_refused);
   thread_ = std::thread([this] { Run(); });
 }
 
@@ -241,6 +242,7 @@ bool Acceptor::AcceptFrom(int listener) {
 bool Acceptor::HandOver(Descriptor connection) {
   if (connections_ >= max_connections_) {
     ++refused_;
+    on_refused_();
     Reset(std::move(connection));
     return true;
   }

@@ -43,6 +43,8 @@ class Acceptor {
   // Takes a connected, non-blocking socket over. Runs on the thread that
   // accepts.
   using TakeConnection = std::function<void(int fd)>;
+  // Is told of each connection that the cap refused; on the same thread.
+  using OnRefused = std::function<void()>;
 
   // Binds and listens; nothing is accepted yet. `address` is HOST:PORT or
   // [IPV6]:PORT; port 0 takes a free one; a name stands for all its addresses.
@@ -57,7 +59,8 @@ class Acceptor {
   int port() const { return port_; }
   int max_connections() const { return max_connections_; }
 
-  void Start(TakeConnection take);
+  void Start(
+      TakeConnection take, OnRefused on_refused = [] {});
   // Closes the listening sockets, and with them what waits in the backlog.
   // Connections that were handed over live on, uncounted. Final.
   void Stop();
@@ -83,6 +86,7 @@ class Acceptor {
   Descriptor epoll_;
   Descriptor stop_event_;
   TakeConnection take_;
+  OnRefused on_refused_;
   // The duplicates that are watched, by themselves. Of the thread.
   std::unordered_map<int, Descriptor> watched_;
   std::atomic<int> connections_ = 0;

@@ -117,6 +117,7 @@ absl::Status Access::Admit(const grpc::CallbackServerContext& context,
   if (!status.ok() || options_.client_calls == 0) return status;
   record->place = places_.Take(record->client);
   if (record->place != nullptr) return absl::OkStatus();
+  record->refusal = Refusal::kClientLimit;
   return WithReason(
       RetryLaterError("the client has " +
                           std::to_string(options_.client_calls) +

@@ -7,11 +7,13 @@
 #include <string_view>
 
 #include "server/service/status.h"
+#include "server/service/trace_context.h"
 
 namespace terrane::server {
 namespace {
 
 constexpr char kRequestIdKey[] = "x-request-id";
+constexpr char kTraceKey[] = "traceparent";
 
 bool IsGoodId(std::string_view id) {
   constexpr std::size_t kMaxSize = 64;
@@ -30,14 +32,18 @@ std::string NewId() {
   return text;
 }
 
-std::string RequestId(const grpc::CallbackServerContext& context) {
+// What the client sent under a key; empty when it sent nothing.
+std::string_view Metadata(const grpc::CallbackServerContext& context,
+                          const char* key) {
   const auto& metadata = context.client_metadata();
-  const auto given = metadata.find(kRequestIdKey);
-  if (given != metadata.end()) {
-    const std::string_view id(given->second.data(), given->second.size());
-    if (IsGoodId(id)) return std::string(id);
-  }
-  return NewId();
+  const auto found = metadata.find(key);
+  if (found == metadata.end()) return {};
+  return {found->second.data(), found->second.size()};
+}
+
+std::string RequestId(const grpc::CallbackServerContext& context) {
+  const std::string_view given = Metadata(context, kRequestIdKey);
+  return IsGoodId(given) ? std::string(given) : NewId();
 }
 
 }  // namespace
@@ -47,6 +53,8 @@ CallRecord BeginCall(const ServiceParts& parts, const char* method,
   CallRecord record;
   record.method = method;
   record.request_id = RequestId(*context);
+  record.trace_id =
+      TraceIdOf(Metadata(*context, kTraceKey)).value_or(std::string());
   context->AddInitialMetadata(kRequestIdKey, record.request_id);
   record.status = parts.access->Admit(*context, &record);
   AddPushback(record.status, context);

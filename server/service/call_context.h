@@ -10,7 +10,9 @@
 #include "server/service/access.h"
 #include "server/service/admission.h"
 #include "server/service/buffer_pool.h"
-#include "server/service/call_log.h"
+#include "server/service/call_book.h"
+#include "server/service/call_record.h"
+#include "server/service/memory_watch.h"
 #include "server/service/stall_watch.h"
 #include "server/service/stream_gate.h"
 #include "server/service/worker_pool.h"
@@ -24,16 +26,17 @@ struct ServiceParts {
   Admission* admission = nullptr;
   StreamGate* gate = nullptr;
   StallWatch* stalls = nullptr;
-  CallLog* log = nullptr;
+  MemoryWatch* memory = nullptr;
+  CallBook* calls = nullptr;
   std::shared_ptr<BufferPool> buffers;
   const Access* access = nullptr;
 };
 
 // Begins the record of a call. Its id is the client's x-request-id (letters,
 // digits, '.', '_', '-'; at most 64), else a new one; the client gets it back
-// in the initial metadata. A call that may not be made
-// (server/service/access.h) has a status that is not OK, and is to be ended
-// with it.
+// in the initial metadata. Its trace is that of the client's traceparent. A
+// call that may not be made (server/service/access.h) has a status that is not
+// OK, and is to be ended with it.
 CallRecord BeginCall(const ServiceParts& parts, const char* method,
                      grpc::CallbackServerContext* context);
 

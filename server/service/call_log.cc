@@ -3,7 +3,9 @@
 #include <spdlog/async.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
+#include <chrono>
 #include <cstdio>
+#include <optional>
 #include <utility>
 
 #include "server/actor/error_reason.h"
@@ -78,6 +80,18 @@ class Line {
   std::string text_;
 };
 
+// Why a call was refused, or what its error says that a program can read.
+std::string Reason(const CallRecord& record) {
+  if (record.refusal.has_value()) return NameOf(*record.refusal);
+  const std::optional<ErrorReason> reason = ReasonOf(record.status);
+  return reason.has_value() ? reason->reason : std::string();
+}
+
+std::chrono::nanoseconds Nanoseconds(double seconds) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::duration<double>(seconds));
+}
+
 }  // namespace
 
 CallLog::CallLog(std::shared_ptr<spdlog::logger> logger, LogFormat format)
@@ -93,18 +107,22 @@ void CallLog::Write(const CallRecord& record) {
   Line line(format_, "call");
   line.Add("request_id", record.request_id)
       .Add("method", record.method)
-      .Add("code", absl::StatusCodeToString(record.status.code()))
+      .Add("code", CodeNameOf(record.status))
+      .AddMs("total_ms", record.total)
       .AddMs("queue_ms", record.queued)
-      .AddMs("generate_ms", record.generated);
+      .AddMs("generate_ms", record.generated)
+      .AddMs("send_ms", record.sending);
+  if (record.estimated_seconds > 0) {
+    line.AddMs("estimate_ms", Nanoseconds(record.estimated_seconds));
+  }
+  if (!record.trace_id.empty()) line.Add("trace_id", record.trace_id);
   if (!record.recipe_hash.empty()) line.Add("recipe", record.recipe_hash);
   if (record.tiles > 0) {
-    line.Add("tiles", record.tiles)
-        .Add("samples", record.samples)
-        .Add("bytes", record.bytes);
+    line.Add("tiles", record.tiles).Add("samples", record.samples);
   }
-  if (record.refused != nullptr) line.Add("refused", record.refused);
-  if (const auto reason = ReasonOf(record.status)) {
-    line.Add("reason", reason->reason);
+  if (record.bytes > 0) line.Add("bytes", record.bytes);
+  if (const std::string reason = Reason(record); !reason.empty()) {
+    line.Add("reason", reason);
   }
   if (fault) {
     const std::string text(record.status.message());

@@ -11,38 +11,15 @@
 
 #include <spdlog/logger.h>
 
-#include <chrono>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 
-#include "absl/status/status.h"
+#include "server/service/call_record.h"
 
 namespace terrane::server {
 
 enum class LogFormat { kText, kJson };
-
-// What one call was, filled in as it goes.
-struct CallRecord {
-  std::string request_id;
-  const char* method = "";
-  // Who asks, for fairness; never logged.
-  std::string client;
-  // Its place among the client's calls (client_places.h), until it is over.
-  std::shared_ptr<const void> place;
-  std::string recipe_hash;
-  std::int64_t tiles = 0;
-  std::int64_t samples = 0;
-  std::int64_t bytes = 0;
-  // What it was expected to take on a worker, in seconds; 0: not priced.
-  double estimated_seconds = 0;
-  // Why it was refused, when it was: "deadline", "streams".
-  const char* refused = nullptr;
-  std::chrono::nanoseconds queued{0};     // waiting for a worker
-  std::chrono::nanoseconds generated{0};  // on a worker
-  absl::Status status;
-};
 
 class CallLog {
  public:

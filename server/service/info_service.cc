@@ -7,11 +7,13 @@ namespace terrane::server {
 grpc::ServerUnaryReactor* InfoServiceImpl::GetServerInfo(
     grpc::CallbackServerContext* context, const v1::GetServerInfoRequest*,
     v1::GetServerInfoResponse* response) {
-  return UnaryCall::Start(parts_, "GetServerInfo", context,
-                          [this, response](std::stop_token, CallRecord*) {
-                            *response = parts_.actor->GetServerInfo();
-                            return absl::OkStatus();
-                          });
+  return UnaryCall::Start(
+      parts_, "GetServerInfo", context,
+      Answer(
+          response,
+          [this](std::stop_token) -> absl::StatusOr<v1::GetServerInfoResponse> {
+            return parts_.actor->GetServerInfo();
+          }));
 }
 
 }  // namespace terrane::server

@@ -27,6 +27,7 @@ grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* PrepareCall::Start(
     }
     call->SetTimer();
   }
+  call->record_.call_class = CallClass::kBatch;
   // Minutes, perhaps: batch work, whose end nobody can tell before it began.
   Work share;
   share.work_class = WorkClass::kBatch;
@@ -56,7 +57,7 @@ void PrepareCall::Run() {
 
   std::unique_lock lock(mutex_);
   running_ = false;
-  record_.queued = start - begin_;
+  record_.queued = start - record_.begin;
   record_.generated = Clock::now() - start;
   if (outcome.ok()) record_.recipe_hash = outcome->recipe_hash();
   outcome_ = std::move(outcome);
@@ -120,7 +121,7 @@ void PrepareCall::OnCancel() {
 }
 
 void PrepareCall::OnDone() {
-  parts_.log->Write(record_);
+  parts_.calls->Close(&record_);
   self_.reset();
 }
 

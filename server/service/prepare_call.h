@@ -16,7 +16,6 @@
 #include <grpcpp/alarm.h>
 #include <grpcpp/support/server_callback.h>
 
-#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -56,8 +55,6 @@ class PrepareCall final
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
   const v1::PrepareTerrainRequest* const request_;
-  const std::chrono::steady_clock::time_point begin_ =
-      std::chrono::steady_clock::now();
   std::stop_source stop_;
   std::shared_ptr<PrepareCall> self_;
 

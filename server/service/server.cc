@@ -18,25 +18,40 @@ constexpr std::size_t kWaitingPerActive = 4;
 // Buffers of tiles kept for the next ones.
 constexpr std::size_t kBufferPoolBytes = std::size_t{64} << 20;
 
+constexpr const char* kServices[] = {v1::TerrainService::service_full_name(),
+                                     v1::SurfaceService::service_full_name(),
+                                     v1::TreeService::service_full_name(),
+                                     v1::FlowerService::service_full_name(),
+                                     v1::RenderService::service_full_name(),
+                                     v1::RasterService::service_full_name(),
+                                     v1::SpotTableService::service_full_name(),
+                                     v1::InfoService::service_full_name()};
+
 }  // namespace
 
 Server::Server(const ServerOptions& options, Access access, Actor* actor,
                CallLog* log)
     : access_(std::move(access)),
+      memory_(options.memory_limit_bytes),
       gate_(static_cast<std::size_t>(options.limits.max_concurrent_streams),
             kWaitingPerActive * static_cast<std::size_t>(
                                     options.limits.max_concurrent_streams)),
       workers_(options.workers),
       admission_(&workers_, options.patience),
       stalls_(options.stream_idle),
-      parts_{actor,
-             &workers_,
-             &admission_,
-             &gate_,
-             &stalls_,
-             log,
-             std::make_shared<BufferPool>(kBufferPoolBytes),
-             &access_},
+      metrics_(kServices, Gauges()),
+      calls_(log, &metrics_),
+      parts_{
+          .actor = actor,
+          .workers = &workers_,
+          .admission = &admission_,
+          .gate = &gate_,
+          .stalls = &stalls_,
+          .memory = &memory_,
+          .calls = &calls_,
+          .buffers = std::make_shared<BufferPool>(kBufferPoolBytes),
+          .access = &access_,
+      },
       terrain_service_(parts_),
       surface_service_(parts_),
       tree_service_(parts_),
@@ -65,6 +80,11 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   const absl::Status built = server->Build(options);
   if (!built.ok()) return built;
   server->SetServing(true);
+  if (!options.http_listen.empty()) {
+    auto http = HttpEndpoint::Start(options.http_listen, server->Pages());
+    if (!http.ok()) return http.status();
+    server->http_ = *std::move(http);
+  }
   return server;
 }
 
@@ -100,13 +120,53 @@ absl::Status Server::Build(const ServerOptions& options) {
   if (server_ == nullptr) {
     return absl::InternalError("gRPC's server does not start");
   }
-  acceptor_->Start([grpc_in](int fd) {
-    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters
-        connection;
-    connection.fd = fd;
-    grpc_in->HandleNewConnection(&connection);
-  });
+  acceptor_->Start(
+      [grpc_in](int fd) {
+        grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters
+            connection;
+        connection.fd = fd;
+        grpc_in->HandleNewConnection(&connection);
+      },
+      [this] { metrics_.CountRefusal(Refusal::kConnections); });
   return absl::OkStatus();
+}
+
+ServerGauges Server::Gauges() {
+  ServerGauges gauges;
+  gauges.workers = [this] { return workers_.load().workers; };
+  gauges.workers_busy = [this] { return workers_.load().busy; };
+  gauges.backlog_seconds[CallClass::kInteractive] = [this] {
+    return workers_.load().interactive_seconds;
+  };
+  gauges.backlog_seconds[CallClass::kBatch] = [this] {
+    return workers_.load().batch_seconds;
+  };
+  gauges.connections = [this] { return acceptor_->connections(); };
+  gauges.memory_bytes = [this] {
+    return static_cast<double>(memory_.ResidentBytes());
+  };
+  if (const auto limit = memory_.limit_bytes()) {
+    gauges.memory_limit_bytes = [limit] { return static_cast<double>(*limit); };
+  }
+  return gauges;
+}
+
+HttpPages Server::Pages() {
+  return {{"/livez", [] { return HttpReply{.body = "ok\n"}; }},
+          {"/readyz",
+           [this] {
+             return ready_ ? HttpReply{.body = "ok\n"}
+                           : HttpReply{.status = 503, .body = "draining\n"};
+           }},
+          {"/metrics", [this] {
+             return HttpReply{.content_type = kMetricsContentType,
+                              .body = metrics_.Text()};
+           }}};
+}
+
+std::optional<int> Server::http_port() const {
+  if (http_ == nullptr) return std::nullopt;
+  return http_->port();
 }
 
 Server::~Server() {
@@ -115,16 +175,9 @@ Server::~Server() {
 
 void Server::SetServing(bool serving) {
   grpc::HealthCheckServiceInterface* health = server_->GetHealthCheckService();
-  for (const char* name : {"", v1::TerrainService::service_full_name(),
-                           v1::SurfaceService::service_full_name(),
-                           v1::TreeService::service_full_name(),
-                           v1::FlowerService::service_full_name(),
-                           v1::RenderService::service_full_name(),
-                           v1::RasterService::service_full_name(),
-                           v1::SpotTableService::service_full_name(),
-                           v1::InfoService::service_full_name()}) {
-    health->SetServingStatus(name, serving);
-  }
+  health->SetServingStatus("", serving);
+  for (const char* name : kServices) health->SetServingStatus(name, serving);
+  ready_ = serving;
 }
 
 void Server::Drain(std::chrono::milliseconds grace,

@@ -1,5 +1,5 @@
-// Server: the services of an Actor on a gRPC port, with health and an ordered
-// end.
+// Server: the services of an Actor on a gRPC port, with health, probes, metrics
+// and an ordered end.
 //
 // Threads: Start, Drain and the destructor from one thread; calls are served on
 // gRPC's threads and generated on the worker pool's.
@@ -9,18 +9,25 @@
 #include <grpcpp/channel.h>
 #include <grpcpp/server.h>
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "server/actor/actor.h"
 #include "server/service/acceptor.h"
 #include "server/service/access.h"
+#include "server/service/call_book.h"
 #include "server/service/call_context.h"
 #include "server/service/connection_limits.h"
 #include "server/service/flower_service.h"
+#include "server/service/http_endpoint.h"
 #include "server/service/info_service.h"
+#include "server/service/memory_watch.h"
+#include "server/service/metrics.h"
 #include "server/service/raster_service.h"
 #include "server/service/render_service.h"
 #include "server/service/spot_table_service.h"
@@ -43,12 +50,16 @@ struct ServerOptions {
   ConnectionLimits connections;
   TlsFiles tls;
   AccessOptions access;
+  // Where probes and metrics are answered over plain HTTP; empty: nowhere.
+  std::string http_listen;
+  // Most memory the process is to take; without it, memory refuses nothing.
+  std::optional<std::int64_t> memory_limit_bytes;
 };
 
 class Server {
  public:
   // Serves `actor` and writes a line per call to `log`; both outlive the
-  // server. Errors: UNAVAILABLE when the address cannot be listened on,
+  // server. Errors: UNAVAILABLE when an address cannot be listened on,
   // INVALID_ARGUMENT for an option that cannot be followed.
   static absl::StatusOr<std::unique_ptr<Server>> Start(
       const ServerOptions& options, Actor* actor, CallLog* log);
@@ -60,10 +71,12 @@ class Server {
   // The port that was taken.
   int port() const { return acceptor_->port(); }
   const Acceptor& acceptor() const { return *acceptor_; }
+  // The port of http_listen; nothing when it was empty.
+  std::optional<int> http_port() const;
 
-  // The ordered end: health says NOT_SERVING, `grace` lets balancers see it,
-  // then no new connection or call is taken and the running calls have `drain`
-  // to end before they are cancelled.
+  // The ordered end: health says NOT_SERVING and /readyz 503, `grace` lets
+  // balancers see it, then no new connection or call is taken and the running
+  // calls have `drain` to end before they are cancelled.
   void Drain(std::chrono::milliseconds grace, std::chrono::milliseconds drain);
 
  private:
@@ -71,13 +84,19 @@ class Server {
          CallLog* log);
 
   absl::Status Build(const ServerOptions& options);
+  ServerGauges Gauges();
+  // /livez, /readyz and /metrics.
+  HttpPages Pages();
   void SetServing(bool serving);
 
   const Access access_;
+  MemoryWatch memory_;
   StreamGate gate_;
   WorkerPool workers_;
   Admission admission_;
   StallWatch stalls_;
+  Metrics metrics_;
+  CallBook calls_;
   ServiceParts parts_;
   TerrainServiceImpl terrain_service_;
   SurfaceServiceImpl surface_service_;
@@ -87,10 +106,12 @@ class Server {
   RasterServiceImpl raster_service_;
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;
-  // Last, so that it goes first: no call outlives what it works with.
+  std::atomic<bool> ready_ = false;
+  // Last, so that they go first: no call outlives what it works with.
   std::unique_ptr<grpc::Server> server_;
   // Hands connections to the server.
   std::unique_ptr<Acceptor> acceptor_;
+  std::unique_ptr<HttpEndpoint> http_;
 };
 
 }  // namespace terrane::server

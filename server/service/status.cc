@@ -142,6 +142,12 @@ std::optional<std::chrono::milliseconds> RetryDelayOf(
   return std::chrono::milliseconds(std::stoll(std::string(*payload)));
 }
 
+std::string CodeNameOf(const absl::Status& status) {
+  // Both name their codes alike.
+  return absl::StatusCodeToString(
+      static_cast<absl::StatusCode>(ToGrpcCode(status.code())));
+}
+
 bool IsServerFault(const absl::Status& status) {
   return ToGrpcCode(status.code()) == grpc::StatusCode::INTERNAL;
 }

@@ -34,6 +34,9 @@ std::optional<std::chrono::milliseconds> RetryDelayOf(
 grpc::Status ToGrpcStatus(const absl::Status& status,
                           const std::string& request_id);
 
+// The name of the code that ToGrpcStatus gives a status, such as "NOT_FOUND".
+std::string CodeNameOf(const absl::Status& status);
+
 // True for the codes that ToGrpcStatus answers with an id only: a fault of the
 // server, whose text belongs into the log.
 bool IsServerFault(const absl::Status& status);

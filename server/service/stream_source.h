@@ -12,7 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "core/terrain/terrain.h"
-#include "server/service/call_log.h"
+#include "server/service/call_record.h"
 
 namespace terrane::server {
 

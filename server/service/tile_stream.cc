@@ -48,12 +48,17 @@ void TileStream::EnterGate() {
     EndWith(record_.status);
     return Advance(std::move(lock));
   }
+  if (parts_.memory->Tight()) {
+    return Refuse(Refusal::kMemory,
+                  RetryLaterError("the server is short of memory; try again",
+                                  kRetryDelay));
+  }
   // Its price is not known yet; its client's calls before it are.
   Work arriving = NextWork();
   arriving.work_class = WorkClass::kInteractive;
   const absl::Status refusal =
       parts_.admission->Admit(arriving, TimeLeft(*context_));
-  if (!refusal.ok()) return Refuse("deadline", refusal);
+  if (!refusal.ok()) return Refuse(Refusal::kDeadline, refusal);
   const absl::Status full =
       RetryLaterError("too many streams are waiting; try again", kRetryDelay);
   {
@@ -62,17 +67,17 @@ void TileStream::EnterGate() {
     queued_ = true;
     ticket_ = parts_.gate->Enter(
         {record_.client, [stream = self_] { Submit(stream); },
-         [stream = self_, full] { stream->Refuse("streams", full); }});
+         [stream = self_, full] { stream->Refuse(Refusal::kStreams, full); }});
     if (ticket_.has_value()) return;
   }
-  Refuse("streams", full);
+  Refuse(Refusal::kStreams, full);
 }
 
-void TileStream::Refuse(const char* reason, const absl::Status& refusal) {
+void TileStream::Refuse(Refusal reason, const absl::Status& refusal) {
   std::unique_lock lock(mutex_);
   queued_ = false;
   if (!end_.has_value()) {
-    record_.refused = reason;
+    record_.refusal = reason;
     AddPushback(refusal, context_);
     EndWith(refusal);
   }
@@ -114,6 +119,9 @@ absl::Status TileStream::Price() {
   raw_seconds_ = source_->EstimatedSeconds();
   record_.estimated_seconds =
       parts_.admission->prices().Price(record_.method, raw_seconds_);
+  if (Admission::ClassOf(record_.estimated_seconds) == WorkClass::kBatch) {
+    record_.call_class = CallClass::kBatch;
+  }
   opening_time_ = record_.generated;
   opened_ = true;
   return parts_.admission->Admit(NextWork(), TimeLeft(*context_));
@@ -138,7 +146,7 @@ void TileStream::RunTask(Clock::time_point submitted,
   const absl::Status refusal =
       made.ok() && !opened_ ? Price() : absl::OkStatus();
   if (!refusal.ok()) {
-    record_.refused = "deadline";
+    record_.refusal = Refusal::kDeadline;
     AddPushback(refusal, context_);
     EndWith(refusal);
   } else if (made.ok()) {
@@ -175,10 +183,13 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
   if (all_made_ && !ahead_.has_value() && !writing_) EndWith(absl::OkStatus());
   finished_ = end_.has_value() && !writing_ && !running_ && !cancelling_;
   const bool finish = finished_;
-  if (finish) record_.status = *end_;
-  if (finish && record_.status.ok()) {
-    parts_.admission->prices().Learn(record_.method, raw_seconds_,
-                                     SpentSeconds());
+  if (finish) {
+    record_.status = *end_;
+    record_.sending = sending_;
+    if (end_->ok()) {
+      parts_.admission->prices().Learn(record_.method, raw_seconds_,
+                                       SpentSeconds());
+    }
   }
   // Once unlocked the stream can end at any time, and then lets go of itself.
   const std::shared_ptr<TileStream> keep = self_;
@@ -191,6 +202,7 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
 void TileStream::OnWriteDone(bool ok) {
   std::unique_lock lock(mutex_);
   writing_ = false;
+  sending_ += Clock::now() - write_began_;
   if (!ok) EndWith(CancelStatus(*context_));
   Advance(std::move(lock));
 }
@@ -217,7 +229,7 @@ void TileStream::EndIfStalledSince(Clock::time_point moment) {
 
 void TileStream::OnDone() {
   if (ticket_.has_value()) parts_.gate->Leave(*ticket_);
-  parts_.log->Write(record_);
+  parts_.calls->Close(&record_);
   self_.reset();
 }
 

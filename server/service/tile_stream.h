@@ -44,7 +44,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   void EndIfStalledSince(std::chrono::steady_clock::time_point moment) override;
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = CallRecord::Clock;
 
   TileStream(const ServiceParts& parts, const char* method,
              grpc::CallbackServerContext* context,
@@ -52,7 +52,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
 
   void EnterGate();
   // Refuses the stream, unless it has ended.
-  void Refuse(const char* reason, const absl::Status& refusal);
+  void Refuse(Refusal reason, const absl::Status& refusal);
   // Queues the next task: opening the source first, then a message each. The
   // stream may end at any time from here on, so the task brings its own share
   // of it.
@@ -92,6 +92,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   bool running_ = false;                   // a worker is at it
   bool writing_ = false;
   Clock::time_point write_began_;
+  std::chrono::nanoseconds sending_{0};  // over all writes
   bool cancelling_ = false;  // the watch ends it, and needs the context
   bool opened_ = false;
   std::chrono::nanoseconds opening_time_{0};  // on a worker

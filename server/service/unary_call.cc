@@ -37,7 +37,7 @@ void UnaryCall::Refuse(const absl::Status& refusal) {
     if (state_ != State::kQueued) return;  // cancelled meanwhile
     state_ = State::kFinished;
   }
-  record_.refused = "deadline";
+  record_.refusal = Refusal::kDeadline;
   AddPushback(refusal, context_);
   End(refusal);
 }
@@ -49,7 +49,7 @@ void UnaryCall::Run() {
     if (state_ != State::kQueued) return;
     state_ = State::kRunning;
   }
-  record_.queued = start - begin_;
+  record_.queued = start - record_.begin;
   absl::Status status = handler_(stop_.get_token(), &record_);
   record_.generated = std::chrono::steady_clock::now() - start;
   {
@@ -77,11 +77,13 @@ void UnaryCall::OnCancel() {
 
 void UnaryCall::End(absl::Status status) {
   record_.status = std::move(status);
+  send_begin_ = CallRecord::Clock::now();
   Finish(ToGrpcStatus(record_.status, record_.request_id));
 }
 
 void UnaryCall::OnDone() {
-  parts_.log->Write(record_);
+  record_.sending = CallRecord::Clock::now() - send_begin_;
+  parts_.calls->Close(&record_);
   self_.reset();
 }
 

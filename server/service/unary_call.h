@@ -12,7 +12,7 @@
 
 #include <grpcpp/support/server_callback.h>
 
-#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -54,10 +54,9 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
   const Handler handler_;
-  const std::chrono::steady_clock::time_point begin_ =
-      std::chrono::steady_clock::now();
   std::stop_source stop_;
   CallRecord record_;
+  CallRecord::Clock::time_point send_begin_;
   std::mutex mutex_;
   State state_ = State::kQueued;
   std::shared_ptr<UnaryCall> self_;
@@ -73,6 +72,7 @@ UnaryCall::Handler Answer(Response* response, Make make) {
     if constexpr (requires { made->recipe_hash(); }) {
       record->recipe_hash = made->recipe_hash();
     }
+    record->bytes = static_cast<std::int64_t>(made->ByteSizeLong());
     *response = *std::move(made);
     return absl::OkStatus();
   };

@@ -57,7 +57,7 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
   }
 
   void OnDone() override {
-    parts_.log->Write(record_);
+    parts_.calls->Close(&record_);
     delete this;
   }
 

@@ -211,7 +211,8 @@ TEST_F(ServedTest, LogHasOneLinePerCall) {
       ::testing::ContainsRegex(
           "^.\"time\":\"[^\"]*\",\"level\":\"info\",\"event\":\"call\","
           "\"request_id\":\"[0-9a-f]*\",\"method\":\"StreamTiles\","
-          "\"code\":\"OK\",\"queue_ms\":[0-9.]*,\"generate_ms\":[0-9.]*,"
+          "\"code\":\"OK\",\"total_ms\":[0-9.]*,\"queue_ms\":[0-9.]*,"
+          "\"generate_ms\":[0-9.]*,\"send_ms\":[0-9.]*,"
           "\"recipe\":\"sha256:[0-9a-f]*\",\"tiles\":4,\"samples\":1024,"
           "\"bytes\":4096.\n$"));
 }
