@@ -1,5 +1,5 @@
-// LatencyHistogram: how often each latency came, in a few kilobytes, with every
-// percentile to 0.2 %.
+// LatencyHistogram: how often each latency came, in some fifty kilobytes, with
+// every percentile to 0.2 %.
 //
 // Log-linear: each octave of nanoseconds has 256 buckets of equal width, so a
 // bucket is at most 1/256 of its values wide, and its middle at most 1/512 off.
