@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   AddTreeCommand(&app, &action);
   AddFlowerCommand(&app, &action);
   AddRenderCommand(&app, &action);
+  AddBenchCommand(&app, &action);
   AddVerifyCommand(&app, &action);
   AddPresetsCommand(&app, &action);
   AddInfoCommand(&app, &action);

@@ -19,6 +19,7 @@ void AddSurfaceCommand(CLI::App* app, Action* action);
 void AddTreeCommand(CLI::App* app, Action* action);
 void AddFlowerCommand(CLI::App* app, Action* action);
 void AddRenderCommand(CLI::App* app, Action* action);
+void AddBenchCommand(CLI::App* app, Action* action);
 void AddVerifyCommand(CLI::App* app, Action* action);
 void AddPresetsCommand(CLI::App* app, Action* action);
 void AddInfoCommand(CLI::App* app, Action* action);

@@ -1,0 +1,66 @@
+// CPU time and memory of the server under test and of the load tester itself.
+//
+// The server's come from /proc, by its process id on this machine, or from its
+// metrics over HTTP (process_cpu_seconds_total or terrane_cpu_seconds_total,
+// and terrane_memory_bytes or process_resident_memory_bytes).
+//
+// Belongs to one thread. Errors: NOT_FOUND, naming what could not be read.
+#ifndef TERRANE_CLIENT_BENCH_SERVER_USAGE_H_
+#define TERRANE_CLIENT_BENCH_SERVER_USAGE_H_
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "absl/status/statusor.h"
+
+namespace terrane::client {
+
+struct Usage {
+  // Not set when the source does not say.
+  std::optional<double> cpu_seconds;  // since the process began
+  std::optional<double> memory_bytes;
+};
+
+using UsageSource = std::function<absl::StatusOr<Usage>()>;
+
+absl::StatusOr<Usage> UsageOfProcess(int pid);
+absl::StatusOr<Usage> UsageOfMetrics(const std::string& url);
+// The same out of Prometheus text; samples of one name are added up.
+Usage UsageOfMetricsText(const std::string& text);
+
+// What a source shows from its first reading to its last.
+class UsageWatch {
+ public:
+  explicit UsageWatch(UsageSource source) : source_(std::move(source)) {}
+
+  // Reads the source; what it cannot read is not known.
+  void Begin();
+  void Look();
+  bool has_begun() const { return has_begun_; }
+
+  // CPUs that were kept busy between Begin and the last Look, in the mean.
+  std::optional<double> cpus() const;
+  std::optional<double> memory_bytes() const {
+    return last_.usage.memory_bytes;
+  }
+  double memory_peak_bytes() const { return peak_; }
+
+ private:
+  struct Reading {
+    std::chrono::steady_clock::time_point time;
+    Usage usage;
+  };
+
+  UsageSource source_;
+  Reading first_;
+  Reading last_;
+  double peak_ = 0;
+  bool has_begun_ = false;
+};
+
+}  // namespace terrane::client
+
+#endif  // TERRANE_CLIENT_BENCH_SERVER_USAGE_H_

@@ -1,0 +1,122 @@
+// `terrane bench`: the load tester.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "client/bench/bench_run.h"
+#include "client/bench/comparison.h"
+#include "client/bench/html_report.h"
+#include "client/bench/text_report.h"
+#include "client/commands/bench_options.h"
+#include "client/commands/command.h"
+#include "client/csv.h"
+#include "client/exit_code.h"
+
+namespace terrane::client {
+namespace {
+
+constexpr char kFooter[] = R"(Examples:
+  terrane bench --concurrency 32 --duration 10s
+  terrane bench --rate 200 --deadline 0.5s --json run.json --html run.html
+  terrane bench --mix tiles=8,profiles=1,surfaces=1,trees=1,flowers=1 --cold 0.2
+  terrane bench --sweep 0.5,1,2,4,8 --deadline 0.5s --clients 4 --html sweep.html
+  terrane bench --concurrency 32 --compare run.json --tolerance 0.05
+Times take a unit: 500ms, 10s, 2m. A request that a verifier finds damaged counts
+as DATA_LOSS. Exit codes: 0 ok, 1 error, 2 usage, 3 worse than --compare,
+4 unreachable, 130 interrupted (with the results so far).)";
+
+// --compare: goodput fell or latency rose.
+constexpr int kExitWorse = 3;
+
+std::string NowText() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(
+                         std::chrono::system_clock::now())));
+}
+
+absl::Status WriteReports(const BenchCommand& command,
+                          const BenchReport& report) {
+  absl::Status status;
+  if (!command.json.empty()) {
+    status = WriteText(command.json, JsonLine(report) + '\n');
+  }
+  if (status.ok() && !command.html.empty()) {
+    status = WriteText(command.html, HtmlReport(report));
+  }
+  return status;
+}
+
+// Compares with the older report; answers the exit code.
+int CompareWith(const BenchCommand& command, const BenchReport& before,
+                const BenchReport& after, std::ostream* text) {
+  const absl::StatusOr<ReportComparison> comparison =
+      CompareReports(before, after, command.tolerance);
+  if (!comparison.ok()) return ReportStatus(comparison.status());
+  *text << comparison->text;
+  return comparison->is_worse ? kExitWorse : kExitOk;
+}
+
+int Run(const BenchCommand& command, const std::string& options_text,
+        std::stop_token stop) {
+  // Before the load: a report that is missing must not cost a run.
+  absl::StatusOr<BenchReport> before = BenchReport();
+  if (!command.compare.empty()) before = ReadReport(command.compare);
+  if (!before.ok()) return ReportStatus(before.status());
+  const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
+  // JSON on standard output leaves no room for text there.
+  std::ostream& text =
+      command.json == "-" || command.html == "-" ? std::cerr : std::cout;
+  const std::string started = NowText();
+  absl::StatusOr<BenchReport> report = RunBench(
+      OptionsOf(command), backend.get(),
+      [&](const BenchRun& run) { text << RunText(run) << std::endl; }, stop);
+  if (!report.ok()) return ReportStatus(report.status());
+  report->set_format(1);
+  report->set_version(command.version);
+  report->set_server(command.connection.server);
+  report->set_started(started);
+  report->set_options(options_text);
+  if (report->has_sweep()) text << SweepMarkdown(*report);
+  const absl::Status written = WriteReports(command, *report);
+  if (!written.ok()) return ReportStatus(written);
+  if (report->interrupted()) return kExitInterrupted;
+  if (command.compare.empty()) return kExitOk;
+  return CompareWith(command, *before, *report, &text);
+}
+
+// The options that were given, on one line.
+std::string OptionsText(const CLI::App& subcommand) {
+  std::string text;
+  for (const CLI::Option* option : subcommand.get_options()) {
+    if (option->count() == 0 || option->get_name() == "--json" ||
+        option->get_name() == "--html") {
+      continue;
+    }
+    if (!text.empty()) text += ' ';
+    text += option->get_name();
+    for (const std::string& result : option->results()) text += ' ' + result;
+  }
+  return text;
+}
+
+}  // namespace
+
+void AddBenchCommand(CLI::App* app, Action* action) {
+  CLI::App* subcommand =
+      app->add_subcommand("bench", "Put a server under load and measure it");
+  const auto command = std::make_shared<BenchCommand>();
+  command->version = app->version();
+  AddBenchOptions(subcommand, command.get());
+  subcommand->footer(kFooter);
+  subcommand->final_callback([command, action, subcommand] {
+    *action = [command, text = OptionsText(*subcommand)](std::stop_token stop) {
+      return Run(*command, text, stop);
+    };
+  });
+}
+
+}  // namespace terrane::client
