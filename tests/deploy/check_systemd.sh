@@ -38,8 +38,9 @@ systemd-analyze security --offline=true --threshold="${most_exposure}" --no-page
   tail -1
 
 # Every flag that the unit gives exists.
+help="$("$1" --help)"
 sed -n '/^ExecStart/,/[^\\]$/p' "${unit}" | grep -oE -- '--[a-z-]+' | while read -r flag; do
-  "$1" --help | grep -q -- "${flag}" || {
+  grep -q -- "${flag}\b" <<<"${help}" || {
     echo "terrane-server has no ${flag}, which the unit gives." >&2
     exit 1
   }

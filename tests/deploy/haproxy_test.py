@@ -158,10 +158,13 @@ class HaproxyTest(unittest.TestCase):
         self.assertEqual(done.stdout, "415")
 
     def test_rapid_reset_stays_at_the_proxy(self):
+        # Each asks for 16 GiB of heights.
+        request = terrain_pb2.StreamTilesRequest(level=16, window=common_pb2.Window(width=65536, height=65536))
+        request.terrain.recipe.seed = 5
         before = most = [replica.resident_mib() for replica in self.replicas]
         with concurrent.futures.ProcessPoolExecutor(4) as attackers, load(self.proxy.address) as polite:
-            attacks = [attackers.submit(rapid_reset.attack, self.proxy.port,
-                                        "/terrane.v1.TerrainService/StreamTiles", 5) for _ in range(4)]
+            attacks = [attackers.submit(rapid_reset.attack, self.proxy.port, "/terrane.v1.TerrainService/StreamTiles",
+                                        request.SerializeToString(), 5) for _ in range(4)]
             while not all(attack.done() for attack in attacks):
                 most = [max(m, r.resident_mib()) for m, r in zip(most, self.replicas)]
                 time.sleep(0.05)

