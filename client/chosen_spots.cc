@@ -138,16 +138,27 @@ absl::Status NameRows(const absl::Status& status,
   return violations.ToStatus();
 }
 
+absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(const ChosenTerrain& terrain,
+                                                   ProgressMode progress,
+                                                   Backend* backend,
+                                                   std::stop_token stop) {
+  v1::PrepareTerrainRequest request;
+  *request.mutable_terrain() = terrain.choice;
+  PreparationProgress shown(terrain.recipe.has_spots() ? progress
+                                                       : ProgressMode::kNone);
+  absl::StatusOr<v1::PreparedTerrain> prepared = backend->PrepareTerrain(
+      request, [&](double fraction) { shown.Show(fraction); }, stop);
+  if (!prepared.ok()) return NameRows(prepared.status(), terrain);
+  return prepared;
+}
+
 absl::StatusOr<std::optional<v1::SpotReport>> PrepareSpots(
     const ChosenTerrain& terrain, ProgressMode progress, Backend* backend,
     std::stop_token stop) {
   if (!terrain.recipe.has_spots()) return std::nullopt;
-  v1::PrepareTerrainRequest request;
-  *request.mutable_terrain() = terrain.choice;
-  PreparationProgress shown(progress);
-  const absl::StatusOr<v1::PreparedTerrain> prepared = backend->PrepareTerrain(
-      request, [&](double fraction) { shown.Show(fraction); }, stop);
-  if (!prepared.ok()) return NameRows(prepared.status(), terrain);
+  const absl::StatusOr<v1::PreparedTerrain> prepared =
+      PrepareTerrain(terrain, progress, backend, stop);
+  if (!prepared.ok()) return prepared.status();
   if (!prepared->has_spots()) return std::nullopt;
   return prepared->spots();
 }

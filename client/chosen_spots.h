@@ -28,6 +28,13 @@ absl::StatusOr<std::shared_ptr<const SpotFile>> UseSpots(
 // by their place in the file.
 absl::Status NameRows(const absl::Status& status, const ChosenTerrain& terrain);
 
+// Makes a terrain ready; with spot heights it shows how far that is. Errors are
+// named by NameRows.
+absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(const ChosenTerrain& terrain,
+                                                   ProgressMode progress,
+                                                   Backend* backend,
+                                                   std::stop_token stop);
+
 // Makes a terrain with spot heights ready, and shows how far that is; nothing
 // to do for one without. Errors are named by NameRows.
 absl::StatusOr<std::optional<v1::SpotReport>> PrepareSpots(

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   Action action;
   AddTerrainCommand(&app, &action);
+  AddExportCommand(&app, &action);
   AddProfileCommand(&app, &action);
   AddHeightsCommand(&app, &action);
   AddSurfaceCommand(&app, &action);

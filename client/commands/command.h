@@ -13,6 +13,7 @@ namespace terrane::client {
 using Action = std::function<int(std::stop_token)>;
 
 void AddTerrainCommand(CLI::App* app, Action* action);
+void AddExportCommand(CLI::App* app, Action* action);
 void AddProfileCommand(CLI::App* app, Action* action);
 void AddHeightsCommand(CLI::App* app, Action* action);
 void AddSurfaceCommand(CLI::App* app, Action* action);

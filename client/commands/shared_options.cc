@@ -205,7 +205,7 @@ void AddTerrainOptions(CLI::App* command, TerrainOptions* options) {
       ->group("Terrain");
 }
 
-void AddExtentOptions(CLI::App* command, ExtentOptions* options) {
+void AddSampleOptions(CLI::App* command, ExtentOptions* options) {
   command
       ->add_option("--level", options->level,
                    "Each level halves the spacing (default: the preset's "
@@ -213,19 +213,23 @@ void AddExtentOptions(CLI::App* command, ExtentOptions* options) {
       ->check(CLI::Range(0, core::kMaxLevel))
       ->group("Samples");
   command
+      ->add_option("--sampling", options->sampling,
+                   "point: on the lattice; area: at the cells' centres")
+      ->transform(OneOf(kSamplings))
+      ->type_name("NAME")
+      ->default_str("point")
+      ->group("Samples");
+}
+
+void AddExtentOptions(CLI::App* command, ExtentOptions* options) {
+  AddSampleOptions(command, options);
+  command
       ->add_option("--window", options->window,
                    "Samples X,Y,WIDTH,HEIGHT of that level (default: all of a "
                    "bounded domain)")
       ->delimiter(',')
       ->expected(4)
       ->type_name("X,Y,W,H")
-      ->group("Samples");
-  command
-      ->add_option("--sampling", options->sampling,
-                   "point: on the lattice; area: at the cells' centres")
-      ->transform(OneOf(kSamplings))
-      ->type_name("NAME")
-      ->default_str("point")
       ->group("Samples");
 }
 

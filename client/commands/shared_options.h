@@ -52,6 +52,8 @@ struct ExtentOptions {
 };
 
 void AddExtentOptions(CLI::App* command, ExtentOptions* options);
+// The same without the window, where tiles are asked for.
+void AddSampleOptions(CLI::App* command, ExtentOptions* options);
 v1::Window WindowOf(const std::vector<std::int64_t>& numbers);
 
 // A message as JSON on one line, with the field names of the .proto file.

@@ -76,6 +76,17 @@ class FullDisk(TimedTest):
         self.assertLessEqual(left.items(), whole.items())
         self.assertEqual(again, whole)
 
+    def test_an_export_goes_on_where_the_disk_was_full(self):
+        choice = ["export", "--local", "--seed", "3", "--level", "9", "--tiles", "0,0,3,2", "--tile-size", "151"]
+        code, left, again = self.fill("x.f32", *choice)
+        whole = self.reference("x.f32", *choice)
+        self.assertEqual(code, 3)
+        manifest = "x.shard-0-of-1.json"
+        tiles_left = {name: data for name, data in left.items() if name != manifest}
+        self.assertTrue(tiles_left)
+        self.assertLess(tiles_left.items(), whole.items())
+        self.assertEqual(again, whole)
+
     def test_one_tif_is_whole_or_not_there(self):
         self.check_one_file("tif")
 
