@@ -140,9 +140,11 @@ absl::StatusOr<BenchReport> RunBench(const BenchOptions& options,
     const absl::StatusOr<Usage> usage = options.server_usage();
     if (!usage.ok()) return usage.status();
   }
-  const std::unique_ptr<CallMaker> calls = MakeGrpcCalls(
-      options.server, options.connections, options.mix.clients, &*workload);
-  Bench bench(options, calls.get(), on_run, stop);
+  const absl::StatusOr<std::unique_ptr<CallMaker>> calls =
+      MakeGrpcCalls(options.server, options.security, options.connections,
+                    options.mix.clients, &*workload);
+  if (!calls.ok()) return calls.status();
+  Bench bench(options, calls->get(), on_run, stop);
   if (options.sweep.empty() && options.sweep_rates.empty()) {
     bench.RunOne(options.load);
   } else {

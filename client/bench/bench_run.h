@@ -17,12 +17,14 @@
 #include "client/bench/server_usage.h"
 #include "client/bench/workload.h"
 #include "client/bench_report.pb.h"
+#include "client/channel_security.h"
 #include "client/progress.h"
 
 namespace terrane::client {
 
 struct BenchOptions {
   std::string server;
+  ChannelSecurity security;
   int connections = 1;
   MixOptions mix;
   WorkloadOptions workload;

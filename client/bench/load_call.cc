@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "client/channel.h"
 #include "client/flower_verifier.h"
-#include "client/remote_caller.h"
 #include "client/status_details.h"
 #include "client/surface_verifier.h"
 #include "client/tile_verifier.h"
@@ -279,14 +279,11 @@ class ProfileCall final : public GrpcCall {
 
 class GrpcCallMaker final : public CallMaker {
  public:
-  GrpcCallMaker(const std::string& server, int connections, int clients,
+  GrpcCallMaker(std::vector<Connection> connections, int clients,
                 const Workload* workload)
-      : workload_(workload), names_clients_(clients > 1) {
-    for (int i = 0; i < connections; ++i) {
-      connections_.emplace_back(
-          MakeChannel(server, ChannelKind::kOwnConnection));
-    }
-  }
+      : workload_(workload),
+        names_clients_(clients > 1),
+        connections_(std::move(connections)) {}
 
   std::unique_ptr<LoadCall> Make(const PlannedRequest& plan,
                                  LoadClock::time_point deadline,
@@ -336,16 +333,22 @@ class GrpcCallMaker final : public CallMaker {
 
   const Workload* const workload_;
   const bool names_clients_;
-  std::vector<Connection> connections_;
+  const std::vector<Connection> connections_;
 };
 
 }  // namespace
 
-std::unique_ptr<CallMaker> MakeGrpcCalls(const std::string& server,
-                                         int connections, int clients,
-                                         const Workload* workload) {
-  return std::make_unique<GrpcCallMaker>(server, connections, clients,
-                                         workload);
+absl::StatusOr<std::unique_ptr<CallMaker>> MakeGrpcCalls(
+    const std::string& server, const ChannelSecurity& security, int connections,
+    int clients, const Workload* workload) {
+  std::vector<Connection> opened;
+  for (int i = 0; i < connections; ++i) {
+    const absl::StatusOr<std::shared_ptr<grpc::Channel>> channel =
+        OpenChannel(server, security, ChannelKind::kOwnConnection);
+    if (!channel.ok()) return channel.status();
+    opened.emplace_back(*channel);
+  }
+  return std::make_unique<GrpcCallMaker>(std::move(opened), clients, workload);
 }
 
 }  // namespace terrane::client

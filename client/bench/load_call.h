@@ -17,8 +17,10 @@
 #include <optional>
 #include <string>
 
+#include "absl/status/statusor.h"
 #include "client/bench/request_mix.h"
 #include "client/bench/workload.h"
+#include "client/channel_security.h"
 
 namespace terrane::client {
 
@@ -65,10 +67,10 @@ class CallMaker {
 // of its own (to each replica, if there are several). Clients of the mix are
 // told apart by the header x-forwarded-for, which a server heeds with
 // --trust-forwarded-for: gRPC cannot bind a connection to an address of its
-// own. `workload` must outlive what is returned.
-std::unique_ptr<CallMaker> MakeGrpcCalls(const std::string& server,
-                                         int connections, int clients,
-                                         const Workload* workload);
+// own. `workload` must outlive what is returned. Errors: those of OpenChannel.
+absl::StatusOr<std::unique_ptr<CallMaker>> MakeGrpcCalls(
+    const std::string& server, const ChannelSecurity& security, int connections,
+    int clients, const Workload* workload);
 
 }  // namespace terrane::client
 

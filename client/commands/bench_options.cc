@@ -268,6 +268,7 @@ BenchOptions OptionsOf(const BenchCommand& command) {
   using Seconds = std::chrono::duration<double>;
   BenchOptions options = command.bench;
   options.server = command.connection.server;
+  options.security = command.connection.security;
   options.mix.weights = *ParseMix(command.mix);  // checked as it was read
   options.warm_up = Seconds(command.warm_up_s);
   options.duration = Seconds(command.duration_s);

@@ -119,10 +119,14 @@ class LoadCallTest : public testing::Test {
     call->Start();
     return result.get_future().get();
   }
+  std::unique_ptr<CallMaker> MakeCalls(int connections, int clients) {
+    return MakeGrpcCalls(server_.address(), {}, connections, clients,
+                         &*workload_)
+        .value();
+  }
   CallResult CallOnce(
       std::chrono::milliseconds deadline = std::chrono::seconds(20)) {
-    return Call(MakeGrpcCalls(server_.address(), 1, 1, &*workload_).get(), {},
-                deadline);
+    return Call(MakeCalls(1, 1).get(), {}, deadline);
   }
 
   FaultyServer server_;
@@ -172,8 +176,7 @@ TEST_F(LoadCallTest, DeadlineEndsACallThatHangs) {
 }
 
 TEST_F(LoadCallTest, ConnectionsAndClientsAreTheirOwn) {
-  const std::unique_ptr<CallMaker> calls =
-      MakeGrpcCalls(server_.address(), 3, 2, &*workload_);
+  const std::unique_ptr<CallMaker> calls = MakeCalls(3, 2);
   for (int i = 0; i < 6; ++i) {
     const CallResult result = Call(calls.get(), {.number = i, .client = i % 2},
                                    std::chrono::seconds(20));
