@@ -19,9 +19,9 @@ namespace terrane::client {
 namespace {
 
 constexpr char kFooter[] = R"(Examples:
-  terrane export --preset fbm/fig06b --tiles 0,0,8,8 --out world/tile.tif
+  terrane export --preset fbm/fig06b --level 9 --tiles all --out world/tile.tif
   terrane export --dem model.tif --tiles all --out world/tile.exr --shards 4 --shard 0
-  parallel terrane export --preset fbm/fig06b --tiles 0,0,8,8 \
+  parallel terrane export --preset fbm/fig06b --level 9 --tiles all \
     --out world/tile.tif --shards 4 --shard {} ::: 0 1 2 3
   terrane export --verify --out world/tile.tif --shards 4
 A shard makes one run of the tiles, counted row by row. It writes what it made to

@@ -86,7 +86,7 @@ pids+=($!)
 node_is_idle() { [[ "$(sinfo --noheader --format=%t)" == idle ]]; }
 wait_for node_is_idle || fail "the node does not come up"
 
-choice=(--preset fbm/fig06b --level 7 --tile-size 33 --tiles=0,0,5,4 --local --threads 1)
+choice=(--preset fbm/fig06b --level 7 --tile-size 33 "--tiles=0,0,5,4" --local --threads 1)
 sbatch --wait --array=0-3 --output="${folder}/job-%a.log" --wrap \
   "'${terrane}' export ${choice[*]} --out '${folder}/parts/tile.tif' --shards 4 --shard \${SLURM_ARRAY_TASK_ID}" ||
   fail "the array fails"
