@@ -137,14 +137,14 @@ void AddWorkFlags(CLI::App* app, Flags* flags) {
       ->check(CLI::Range(1, 86'400))
       ->capture_default_str();
   app->add_option("--raster-store-mib", flags->raster_store_mib,
-                  "Memory for uploaded rasters, in MiB")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
-      ->capture_default_str();
+                  "Memory for uploaded rasters, in MiB (default: 1024, or a "
+                  "quarter of the memory limit where that is less)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20));
   app->add_option("--prepared-mib", flags->prepared_mib,
                   "Memory for recipes made ready and kept, in MiB; what takes "
-                  "more to make ready is refused")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
-      ->capture_default_str();
+                  "more to make ready is refused (default: 2048, or a quarter "
+                  "of the memory limit where that is less)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20));
 }
 
 void AddLimitFlags(CLI::App* app, Flags* flags) {
@@ -220,11 +220,22 @@ std::optional<std::int64_t> MemoryLimit(const Flags& flags) {
   return std::min(limit, group_limit.value_or(limit));
 }
 
+// A store must fit into the memory limit beside the other one and the work.
+std::int64_t StoreBytes(std::optional<std::int64_t> mib, std::int64_t usual,
+                        std::optional<std::int64_t> memory_limit) {
+  if (mib.has_value()) return *mib << 20;
+  return std::min(usual, memory_limit.value_or(4 * usual) / 4);
+}
+
 // What follows from the flags.
 void Resolve(Flags* flags) {
   Limits& limits = flags->server.limits;
-  limits.raster_store_bytes = flags->raster_store_mib << 20;
-  limits.prepared_bytes = flags->prepared_mib << 20;
+  const std::optional<std::int64_t> memory_limit = MemoryLimit(*flags);
+  flags->server.memory_limit_bytes = memory_limit;
+  limits.raster_store_bytes = StoreBytes(
+      flags->raster_store_mib, limits.raster_store_bytes, memory_limit);
+  limits.prepared_bytes =
+      StoreBytes(flags->prepared_mib, limits.prepared_bytes, memory_limit);
   limits.recipe.max_inline_spots =
       std::min(limits.recipe.max_inline_spots, limits.recipe.max_spots);
   limits.max_raster_samples =
@@ -234,7 +245,6 @@ void Resolve(Flags* flags) {
   flags->server.patience = std::chrono::seconds(flags->patience_seconds);
   flags->server.connections.max_age =
       std::chrono::seconds(flags->max_age_seconds);
-  flags->server.memory_limit_bytes = MemoryLimit(*flags);
   flags->server.workers = flags->workers > 0 ? flags->workers : UsableCpus();
 }
 

@@ -15,8 +15,8 @@ struct Flags {
   bool insecure = false;
   int max_age_seconds = 3600;
   int workers = 0;
-  std::int64_t raster_store_mib = 1024;
-  std::int64_t prepared_mib = 2048;
+  std::optional<std::int64_t> raster_store_mib;
+  std::optional<std::int64_t> prepared_mib;
   int patience_seconds = 60;
   int stream_idle_seconds = 60;
   int drain_seconds = 30;

@@ -69,6 +69,11 @@ Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context) {
   return deadline - std::chrono::system_clock::now();
 }
 
+absl::Status ShortOfMemoryError() {
+  return RetryLaterError("the server is short of memory; try again",
+                         std::chrono::seconds(1));
+}
+
 void AddPushback(const absl::Status& status,
                  grpc::CallbackServerContext* context) {
   if (const auto delay = RetryDelayOf(status)) {

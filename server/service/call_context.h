@@ -43,6 +43,9 @@ CallRecord BeginCall(const ServiceParts& parts, const char* method,
 // The time that a call has left.
 Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context);
 
+// The refusal of a call while memory is tight.
+absl::Status ShortOfMemoryError();
+
 // Tells the client's library when to come back, if the status says so.
 void AddPushback(const absl::Status& status,
                  grpc::CallbackServerContext* context);

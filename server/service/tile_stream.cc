@@ -49,9 +49,7 @@ void TileStream::EnterGate() {
     return Advance(std::move(lock));
   }
   if (parts_.memory->Tight()) {
-    return Refuse(Refusal::kMemory,
-                  RetryLaterError("the server is short of memory; try again",
-                                  kRetryDelay));
+    return Refuse(Refusal::kMemory, ShortOfMemoryError());
   }
   // Its price is not known yet; its client's calls before it are.
   Work arriving = NextWork();

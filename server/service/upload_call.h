@@ -33,7 +33,7 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
         ticket_(parts.workers->NextTicket()),
         upload_(std::move(upload)) {
     if (record_.status.ok()) {
-      this->StartRead(&part_);
+      ReadNext();
     } else {
       End(record_.status);
     }
@@ -69,10 +69,21 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
     record_.bytes += static_cast<std::int64_t>(part_.chunk().size());
     record_.generated += Clock::now() - start;
     if (status.ok()) {
-      this->StartRead(&part_);
+      ReadNext();
     } else {
       End(status);
     }
+  }
+
+  // An upload grows with each chunk, so each one is asked whether it may.
+  void ReadNext() {
+    if (parts_.memory->Tight()) {
+      record_.refusal = Refusal::kMemory;
+      const absl::Status refusal = ShortOfMemoryError();
+      AddPushback(refusal, context_);
+      return End(refusal);
+    }
+    this->StartRead(&part_);
   }
 
   void Complete(Clock::time_point start) {
