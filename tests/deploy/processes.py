@@ -64,7 +64,9 @@ class Replica:
             [self.program, "--listen", f"127.0.0.1:{self.port}", "--http-listen", f"127.0.0.1:{self.http_port}",
              "--log-level", "error", *self.flags],
             stdout=subprocess.DEVNULL, env={**os.environ, "ASAN_OPTIONS": sanitizer})
-        wait_until(lambda: get(self.url("/readyz"))[0] == 200, "a replica that is ready")
+        wait_until(lambda: self.process.poll() is not None or get(self.url("/readyz"))[0] == 200, "a replica that is ready")
+        if self.process.poll() is not None:
+            raise AssertionError(f"terrane-server ended with {self.process.returncode}")
 
     def url(self, path):
         return f"http://127.0.0.1:{self.http_port}{path}"
