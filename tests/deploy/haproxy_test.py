@@ -83,14 +83,17 @@ def sha256(file):
 
 class HaproxyTest(unittest.TestCase):
     def setUp(self):
-        self.replicas = [processes.Replica(SERVER, "--trust-forwarded-for") for _ in range(2)]
+        self.replicas = []
+        self.addCleanup(self.stop_replicas)
+        for _ in range(2):
+            self.replicas.append(processes.Replica(SERVER, "--trust-forwarded-for"))
         self.proxy = processes.Proxy(self.replicas)
+        self.addCleanup(self.proxy.stop)
         temporary = tempfile.TemporaryDirectory()
         self.folder = pathlib.Path(temporary.name)
         self.addCleanup(temporary.cleanup)
 
-    def tearDown(self):
-        self.proxy.stop()
+    def stop_replicas(self):
         for replica in self.replicas:
             if replica.process.poll() is None:
                 self.assertEqual(replica.stop(), 0)

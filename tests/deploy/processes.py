@@ -64,9 +64,13 @@ class Replica:
             [self.program, "--listen", f"127.0.0.1:{self.port}", "--http-listen", f"127.0.0.1:{self.http_port}",
              "--log-level", "error", *self.flags],
             stdout=subprocess.DEVNULL, env={**os.environ, "ASAN_OPTIONS": sanitizer})
-        wait_until(lambda: self.process.poll() is not None or get(self.url("/readyz"))[0] == 200, "a replica that is ready")
-        if self.process.poll() is not None:
-            raise AssertionError(f"terrane-server ended with {self.process.returncode}")
+        try:
+            wait_until(lambda: self.process.poll() is not None or get(self.url("/readyz"))[0] == 200, "a ready replica")
+            if self.process.poll() is not None:
+                raise AssertionError(f"terrane-server ended with {self.process.returncode}")
+        except AssertionError:
+            self.kill()
+            raise
 
     def url(self, path):
         return f"http://127.0.0.1:{self.http_port}{path}"
@@ -102,7 +106,11 @@ class Proxy:
             ["haproxy", "-db", "-f", DEPLOY / "haproxy" / "haproxy.cfg", "-f", backend], stdout=self.log,
             stderr=subprocess.STDOUT, env={**os.environ, "TERRANE_BIND": f"127.0.0.1:{self.port}",
                                            "HAPROXY_STATS": f"127.0.0.1:{self.stats_port}"})
-        wait_until(lambda: self.up(0) and self.up(len(replicas) - 1), "replicas that HAProxy sees as up")
+        try:
+            wait_until(lambda: self.up(0) and self.up(len(replicas) - 1), "replicas that HAProxy sees as up")
+        except AssertionError:
+            self.stop()
+            raise
 
     @property
     def address(self):
