@@ -53,7 +53,8 @@ bool IsNumeric(int family, const std::string& host) {
 }
 
 bool IsLoopback(const std::string& host) {
-  return host == "localhost" || host == "::1" || host.starts_with("127.");
+  return host == "localhost" || host == "::1" ||
+         (host.starts_with("127.") && IsNumeric(AF_INET, host));
 }
 
 absl::Status NoAddress(const std::string& part) {

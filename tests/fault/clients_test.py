@@ -23,7 +23,7 @@ class ClientsThatGo(FaultTest):
 
     def test_a_client_gone_mid_stream_stops_the_work(self):
         channel = self.server.channel()
-        stream = self.server.terrain(channel).StreamTiles(endless_request(), timeout=15)
+        stream = self.server.terrain(channel).StreamTiles(endless_request())
         for _ in range(3):
             next(stream)
         channel.close()
@@ -55,7 +55,8 @@ class ClientsThatGo(FaultTest):
                 request = endless_request() if kind == "endless" else tiles_request(window=(0, 0, 64, 64))
                 if kind == "bad":
                     request.level = 999
-                stream = stub.StreamTiles(request, timeout=15)
+                # An endless one with a deadline would be refused.
+                stream = stub.StreamTiles(request, timeout=None if kind == "endless" else 15)
                 if kind == "endless":
                     stream.initial_metadata()  # the server has begun
                     time.sleep(random_delay.uniform(0, 0.02))
@@ -111,13 +112,28 @@ class Deadlines(FaultTest):
     FLAGS = ("--workers", "1")
 
     def test_an_expired_stream_is_stopped(self):
-        stream = self.server.terrain(self.channel()).StreamTiles(endless_request(), timeout=0.5)
+        # Cheap enough to be admitted; its reader is too slow for it.
+        stream = self.server.terrain(self.channel()).StreamTiles(
+            tiles_request(level=30, window=(0, 0, 3000, 3000), tile_size=100), timeout=1.5)
+        next(stream)
+        time.sleep(2)
         with self.assertRaises(grpc.RpcError) as raised:
             collections.deque(stream, maxlen=0)
         self.assertEqual(raised.exception.code(), grpc.StatusCode.DEADLINE_EXCEEDED)
         (call,) = self.calls_in_log(1)
         self.assertEqual(call["code"], "DEADLINE_EXCEEDED")
         self.assertGreater(call["tiles"], 0)
+
+    def test_what_cannot_end_in_time_is_refused_at_once(self):
+        begin = time.monotonic()
+        with self.assertRaises(grpc.RpcError) as raised:
+            next(self.server.terrain(self.channel()).StreamTiles(endless_request(), timeout=10))
+        self.assertEqual(raised.exception.code(), grpc.StatusCode.RESOURCE_EXHAUSTED)
+        self.assertLess(time.monotonic() - begin, 5)
+        self.assertIn("grpc-retry-pushback-ms", dict(raised.exception.trailing_metadata()))
+        (call,) = self.calls_in_log(1)
+        self.assertEqual((call["code"], call["reason"]), ("RESOURCE_EXHAUSTED", "deadline"))
+        self.assertNotIn("tiles", call)
 
     def test_what_expires_in_the_queue_is_never_computed(self):
         stub = self.server.terrain(self.channel())

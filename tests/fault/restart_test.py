@@ -73,7 +73,7 @@ class GentleEnd(TimedTest):
             self.addCleanup(channel.close)
             # Costly tiles in small messages: half a second of one core each stream.
             request = tiles_request(seed=seed, level=30, tiles=(0, 0, tiles_a_side, tiles_a_side), tile_size=65)
-            stream = server.terrain(channel).StreamTiles(request, timeout=15)
+            stream = server.terrain(channel).StreamTiles(request)
             next(stream)
             streams.append(stream)
         return streams
