@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -15,21 +15,9 @@ namespace terrane::server {
 class Exposition {
  public:
   explicit Exposition(const std::string& text) {
-    static const std::regex kComment("# (HELP|TYPE) ([a-z][a-z0-9_]*) (\\S.*)");
-    static const std::regex kSample(
-        "([a-z][a-z0-9_]*)(\\{(.*)\\})? (-?[0-9.]+(e[+-]?[0-9]+)?)");
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
-      std::smatch part;
-      if (std::regex_match(line, part, kComment)) {
-        if (part[1] == "TYPE") types_[part[2]] = part[3];
-      } else if (std::regex_match(line, part, kSample)) {
-        EXPECT_TRUE(types_.contains(FamilyOf(part[1]))) << line;
-        const auto [_, is_new] = samples_.emplace(
-            std::string(part[1]) + std::string(part[2]), std::stod(part[4]));
-        EXPECT_TRUE(is_new) << line;
-        ReadLabels(part[1], part[3]);
-      } else {
+      if (!(line.starts_with("# ") ? ReadComment(line) : ReadSample(line))) {
         ADD_FAILURE() << "not a line of the text format: " << line;
       }
     }
@@ -67,12 +55,56 @@ class Exposition {
     return name;
   }
 
-  void ReadLabels(const std::string& name, const std::string& list) {
-    static const std::regex kLabel("([a-z]+)=\"([^\"]*)\"");
-    for (std::sregex_iterator label(list.begin(), list.end(), kLabel), end;
-         label != end; ++label) {
-      labels_[FamilyOf(name)][(*label)[1]].insert((*label)[2]);
+  static bool IsName(const std::string& text) {
+    return !text.empty() && text[0] >= 'a' && text[0] <= 'z' &&
+           text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+               text.npos;
+  }
+
+  // "# HELP name text" or "# TYPE name type".
+  bool ReadComment(const std::string& line) {
+    std::istringstream words(line);
+    std::string hash;
+    std::string kind;
+    std::string name;
+    std::string rest;
+    words >> hash >> kind >> name >> rest;
+    if (kind == "TYPE") types_[name] = rest;
+    return (kind == "HELP" || kind == "TYPE") && IsName(name) && !rest.empty();
+  }
+
+  // "name value" or "name{label="value",...} value".
+  bool ReadSample(const std::string& line) {
+    const std::size_t space = line.rfind(' ');
+    if (space == line.npos) return false;
+    const std::string series = line.substr(0, space);
+    const std::string number = line.substr(space + 1);
+    std::size_t read = 0;
+    const double value = number.empty() ? 0 : std::stod(number, &read);
+    const std::size_t brace = series.find('{');
+    const std::string name = series.substr(0, brace);
+    if (read != number.size() || number.empty() || !IsName(name)) return false;
+    EXPECT_TRUE(types_.contains(FamilyOf(name))) << line;
+    EXPECT_TRUE(samples_.emplace(series, value).second) << line;
+    if (brace == series.npos) return true;
+    return series.ends_with('}') &&
+           ReadLabels(FamilyOf(name),
+                      series.substr(brace + 1, series.size() - brace - 2));
+  }
+
+  // "label="value",label="value"".
+  bool ReadLabels(const std::string& family, const std::string& list) {
+    for (std::size_t at = 0; at < list.size();) {
+      const std::size_t equals = list.find("=\"", at);
+      const std::size_t end =
+          equals == list.npos ? equals : list.find('"', equals + 2);
+      if (end == list.npos) return false;
+      labels_[family][list.substr(at, equals - at)].insert(
+          list.substr(equals + 2, end - equals - 2));
+      if (end + 1 < list.size() && list[end + 1] != ',') return false;
+      at = end + 2;
     }
+    return true;
   }
 
   std::map<std::string, std::string> types_;
