@@ -159,7 +159,9 @@ TEST(ServedMetricsTest, StreamsUnaryCallsAndUploadsCount) {
   EXPECT_EQ(text["terrane_bytes_total{method=\"UploadRaster\"}"], 200);
   EXPECT_GT(text["terrane_bytes_total{method=\"GetServerInfo\"}"], 100);
   EXPECT_GT(text["terrane_work_seconds_total{method=\"StreamTiles\"}"], 0);
-  EXPECT_EQ(text["terrane_queue_wait_seconds_count{class=\"interactive\"}"], 5);
+  // Preparing is batch work.
+  EXPECT_EQ(text["terrane_queue_wait_seconds_count{class=\"interactive\"}"], 4);
+  EXPECT_EQ(text["terrane_queue_wait_seconds_count{class=\"batch\"}"], 1);
   // A call takes at least what its work does.
   EXPECT_GE(text["terrane_rpc_seconds_sum{method=\"GetServerInfo\"}"],
             text["terrane_work_seconds_total{method=\"GetServerInfo\"}"]);

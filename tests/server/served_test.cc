@@ -213,6 +213,7 @@ TEST_F(ServedTest, LogHasOneLinePerCall) {
           "\"request_id\":\"[0-9a-f]*\",\"method\":\"StreamTiles\","
           "\"code\":\"OK\",\"total_ms\":[0-9.]*,\"queue_ms\":[0-9.]*,"
           "\"generate_ms\":[0-9.]*,\"send_ms\":[0-9.]*,"
+          "\"estimate_ms\":[0-9.]*,"
           "\"recipe\":\"sha256:[0-9a-f]*\",\"tiles\":4,\"samples\":1024,"
           "\"bytes\":4096.\n$"));
 }

@@ -224,7 +224,7 @@ TEST(TileStreamTest, WhatCannotEndInTimeIsRefusedBeforeATileIsMade) {
             "type.googleapis.com/google.rpc.RetryInfo");
   EXPECT_EQ(actor.tiles().started, 0);
   EXPECT_TRUE(ask(std::chrono::seconds(500)).ok());
-  EXPECT_THAT(served.StopAndReadLog(), HasSubstr("\"refused\":\"deadline\""));
+  EXPECT_THAT(served.StopAndReadLog(), HasSubstr("\"reason\":\"deadline\""));
 }
 
 TEST(TileStreamTest, AReaderThatTakesNothingIsCut) {
