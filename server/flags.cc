@@ -70,8 +70,14 @@ void AddNetworkFlags(CLI::App* app, Flags* flags) {
       ->capture_default_str();
   app->add_flag("--reflection", flags->server.reflection,
                 "Answer gRPC server reflection (grpcurl, buf curl)");
+  app->add_option("--grace-seconds", flags->grace_seconds,
+                  "After SIGTERM or SIGINT calls are still taken for this long "
+                  "while probes say that it ends: longer than a balancer needs "
+                  "to notice")
+      ->check(CLI::Range(0.0, 600.0))
+      ->capture_default_str();
   app->add_option("--drain-seconds", flags->drain_seconds,
-                  "Time for running calls to end after SIGTERM or SIGINT")
+                  "Time for running calls to end after that")
       ->check(CLI::Range(0, 3600))
       ->capture_default_str();
 }

@@ -19,6 +19,8 @@ struct Flags {
   std::optional<std::int64_t> prepared_mib;
   int patience_seconds = 60;
   int stream_idle_seconds = 60;
+  // For balancers to see NOT_SERVING before the port closes.
+  double grace_seconds = 0.2;
   int drain_seconds = 30;
   std::int64_t memory_limit_mib = 0;
   std::string log_level = "info";

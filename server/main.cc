@@ -23,8 +23,6 @@ namespace terrane::server {
 namespace {
 
 constexpr int kExitError = 1;
-// For balancers to see NOT_SERVING before the port closes.
-constexpr std::chrono::milliseconds kGrace{200};
 
 // The signals that end the server, blocked in this thread and so in every
 // thread that it starts.
@@ -72,7 +70,9 @@ int Serve(const Flags& flags) {
   sigwait(&signals, &signal);
   EndAtNextSignal(signals);
   log.Event("draining", strsignal(signal));
-  (*server)->Drain(kGrace, std::chrono::seconds(flags.drain_seconds));
+  const std::chrono::duration<double> grace(flags.grace_seconds);
+  (*server)->Drain(std::chrono::duration_cast<std::chrono::milliseconds>(grace),
+                   std::chrono::seconds(flags.drain_seconds));
   log.Event("stopped", "all calls have ended");
   return 0;
 }

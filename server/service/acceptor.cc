@@ -35,13 +35,17 @@ absl::Status SystemError(const std::string& call) {
              : absl::UnavailableError(text);
 }
 
+int PortIn(const sockaddr_storage& address) {
+  // At the same place for both families.
+  return ntohs(reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
+}
+
 // The port a socket is bound to.
 int PortOf(int fd) {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
   getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size);
-  // At the same place for both families.
-  return ntohs(reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
+  return PortIn(address);
 }
 
 // A listening socket; `port` unless it is 0. Sockets accepted from it inherit
@@ -174,8 +178,20 @@ void Acceptor::Stop() {
     thread_.join();
   }
   listeners_.clear();
-  watched_.clear();
   connections_ = 0;
+}
+
+std::vector<int> Acceptor::SocketsFrom(int peer_port) const {
+  std::vector<int> found;
+  for (const auto& [fd, duplicate] : watched_) {
+    sockaddr_storage address{};
+    socklen_t size = sizeof address;
+    if (getpeername(fd, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
+        PortIn(address) == peer_port) {
+      found.push_back(fd);
+    }
+  }
+  return found;
 }
 
 bool Acceptor::Watch(int fd, std::uint32_t events) {

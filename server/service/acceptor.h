@@ -64,6 +64,9 @@ class Acceptor {
   // Closes the listening sockets, and with them what waits in the backlog.
   // Connections that were handed over live on, uncounted. Final.
   void Stop();
+  // After Stop: the sockets whose peer has this port (one, but for peers of
+  // several hosts). They stay open as long as this object.
+  std::vector<int> SocketsFrom(int peer_port) const;
 
   // Open now; reset because of the cap so far.
   int connections() const { return connections_; }

@@ -12,6 +12,7 @@
 #include "server/service/buffer_pool.h"
 #include "server/service/call_book.h"
 #include "server/service/call_record.h"
+#include "server/service/linger.h"
 #include "server/service/memory_watch.h"
 #include "server/service/stall_watch.h"
 #include "server/service/stream_gate.h"
@@ -30,6 +31,7 @@ struct ServiceParts {
   CallBook* calls = nullptr;
   std::shared_ptr<BufferPool> buffers;
   const Access* access = nullptr;
+  Linger* linger = nullptr;
 };
 
 // Begins the record of a call. Its id is the client's x-request-id (letters,

@@ -97,12 +97,14 @@ void PrepareCall::EndIfReady(std::unique_lock<std::mutex> lock) {
   // Nobody sets the timer any more. It goes now: it shares this call, which
   // holds it.
   timer_.reset();
-  if (status.ok()) {
-    *message_.mutable_prepared() = **std::move(outcome_);
-    StartWriteAndFinish(&message_, grpc::WriteOptions(), status);
-  } else {
-    Finish(status);
-  }
+  parts_.linger->Then(context_->peer(), [keep, status] {
+    if (status.ok()) {
+      *keep->message_.mutable_prepared() = **std::move(keep->outcome_);
+      keep->StartWriteAndFinish(&keep->message_, grpc::WriteOptions(), status);
+    } else {
+      keep->Finish(status);
+    }
+  });
 }
 
 void PrepareCall::OnWriteDone(bool ok) {

@@ -51,6 +51,7 @@ Server::Server(const ServerOptions& options, Access access, Actor* actor,
           .calls = &calls_,
           .buffers = std::make_shared<BufferPool>(kBufferPoolBytes),
           .access = &access_,
+          .linger = &linger_,
       },
       terrain_service_(parts_),
       surface_service_(parts_),
@@ -185,6 +186,8 @@ void Server::Drain(std::chrono::milliseconds grace,
   SetServing(false);
   std::this_thread::sleep_for(grace);
   acceptor_->Stop();
+  linger_.Begin([this](int port) { return acceptor_->SocketsFrom(port); },
+                Linger::Clock::now() + drain);
   server_->Shutdown(std::chrono::system_clock::now() + drain);
   server_->Wait();
 }

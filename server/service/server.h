@@ -26,6 +26,7 @@
 #include "server/service/flower_service.h"
 #include "server/service/http_endpoint.h"
 #include "server/service/info_service.h"
+#include "server/service/linger.h"
 #include "server/service/memory_watch.h"
 #include "server/service/metrics.h"
 #include "server/service/raster_service.h"
@@ -76,7 +77,8 @@ class Server {
 
   // The ordered end: health says NOT_SERVING and /readyz 503, `grace` lets
   // balancers see it, then no new connection or call is taken and the running
-  // calls have `drain` to end before they are cancelled.
+  // calls have `drain` to end, and their readers to take what was sent, before
+  // they are cancelled.
   void Drain(std::chrono::milliseconds grace, std::chrono::milliseconds drain);
 
  private:
@@ -95,6 +97,7 @@ class Server {
   WorkerPool workers_;
   Admission admission_;
   StallWatch stalls_;
+  Linger linger_;
   Metrics metrics_;
   CallBook calls_;
   ServiceParts parts_;

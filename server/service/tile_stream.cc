@@ -194,7 +194,12 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
   lock.unlock();
   if (generate) Submit(keep);
   if (write) StartWrite(&outgoing_);
-  if (finish) Finish(ToGrpcStatus(record_.status, record_.request_id));
+  if (finish) {
+    parts_.linger->Then(context_->peer(), [keep] {
+      keep->Finish(
+          ToGrpcStatus(keep->record_.status, keep->record_.request_id));
+    });
+  }
 }
 
 void TileStream::OnWriteDone(bool ok) {

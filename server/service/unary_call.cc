@@ -78,7 +78,9 @@ void UnaryCall::OnCancel() {
 void UnaryCall::End(absl::Status status) {
   record_.status = std::move(status);
   send_begin_ = CallRecord::Clock::now();
-  Finish(ToGrpcStatus(record_.status, record_.request_id));
+  parts_.linger->Then(context_->peer(), [call = self_] {
+    call->Finish(ToGrpcStatus(call->record_.status, call->record_.request_id));
+  });
 }
 
 void UnaryCall::OnDone() {

@@ -97,7 +97,9 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
   void End(absl::Status status) {
     upload_.reset();
     record_.status = std::move(status);
-    this->Finish(ToGrpcStatus(record_.status, record_.request_id));
+    parts_.linger->Then(context_->peer(), [this] {
+      this->Finish(ToGrpcStatus(record_.status, record_.request_id));
+    });
   }
 
   const ServiceParts& parts_;

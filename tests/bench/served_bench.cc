@@ -4,7 +4,8 @@
 //   terrane_served_bench [--tiles N] [--rounds N] [--workers N]
 //
 // The ratio says what generating costs a client; the wire is the wall when it
-// is near 1. Prints a table; every figure is the median of the rounds.
+// is near 1. Directly, and through one HAProxy where it is installed. Prints a
+// table; every figure is the median of the rounds.
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
 #include <grpcpp/security/server_credentials.h>
@@ -21,6 +22,7 @@
 
 #include "server/service/server.h"
 #include "terrane/v1/terrain.grpc.pb.h"
+#include "tests/bench/local_haproxy.h"
 
 namespace terrane::server {
 namespace {
@@ -146,7 +148,41 @@ std::pair<v1::StreamTilesResponse, v1::StreamTilesResponse> FirstMessages(
   return messages;
 }
 
-int Run(int tiles, int rounds, int workers) {
+// Where clients find both servers: themselves, or doors of a proxy.
+struct Path {
+  const char* name;
+  int ready_port;
+  int generated_port;
+};
+
+struct Choice {
+  int tiles;
+  int rounds;
+};
+
+void PrintRows(const Path& path, const Choice& choice) {
+  const std::pair<const char*, v1::FractalSource> sources[] = {
+      {"MIDPOINT", v1::FRACTAL_SOURCE_MIDPOINT},
+      {"SUBDIVISION", v1::FRACTAL_SOURCE_SUBDIVISION}};
+  for (const auto& [name, source] : sources) {
+    const v1::StreamTilesRequest request = Request(source, choice.tiles);
+    for (const int connections : {1, 2, 4}) {
+      std::vector<double> generated;
+      std::vector<double> from_buffer;
+      for (int round = 0; round < choice.rounds; ++round) {
+        from_buffer.push_back(Total(path.ready_port, connections, request));
+        generated.push_back(Total(path.generated_port, connections, request));
+      }
+      std::printf("%-8s %-12s %12d %12.0f %14.0f %10.2f\n", path.name, name,
+                  connections, Median(from_buffer) / 1e6,
+                  Median(generated) / 1e6,
+                  Median(generated) / Median(from_buffer));
+      std::fflush(stdout);
+    }
+  }
+}
+
+int Run(const Choice& choice, int workers) {
   const std::unique_ptr<Actor> actor = MakeActor(Limits(), workers);
   CallLog log(std::make_shared<spdlog::logger>(
                   "bench", std::make_shared<spdlog::sinks::null_sink_mt>()),
@@ -160,7 +196,7 @@ int Run(int tiles, int rounds, int workers) {
     return 1;
   }
   const auto [header, tile] = FirstMessages((*server)->port());
-  ReadyService ready(header, tile, tiles);
+  ReadyService ready(header, tile, choice.tiles);
   int ready_port = 0;
   grpc::ServerBuilder builder;
   builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(),
@@ -168,28 +204,19 @@ int Run(int tiles, int rounds, int workers) {
   builder.RegisterService(&ready);
   const std::unique_ptr<grpc::Server> ready_server = builder.BuildAndStart();
 
-  std::printf("%d tiles of 256 x 256 float32 a stream, %d workers\n", tiles,
-              workers);
-  std::printf("%-12s %12s %12s %14s %10s\n", "source", "connections",
-              "ready MB/s", "generated MB/s", "ratio");
-  const std::pair<const char*, v1::FractalSource> sources[] = {
-      {"MIDPOINT", v1::FRACTAL_SOURCE_MIDPOINT},
-      {"SUBDIVISION", v1::FRACTAL_SOURCE_SUBDIVISION}};
-  for (const auto& [name, source] : sources) {
-    const v1::StreamTilesRequest request = Request(source, tiles);
-    for (const int connections : {1, 2, 4}) {
-      std::vector<double> generated;
-      std::vector<double> from_buffer;
-      for (int round = 0; round < rounds; ++round) {
-        from_buffer.push_back(Total(ready_port, connections, request));
-        generated.push_back(Total((*server)->port(), connections, request));
-      }
-      std::printf("%-12s %12d %12.0f %14.0f %10.2f\n", name, connections,
-                  Median(from_buffer) / 1e6, Median(generated) / 1e6,
-                  Median(generated) / Median(from_buffer));
-      std::fflush(stdout);
-    }
+  std::printf("%d tiles of 256 x 256 float32 a stream, %d workers\n",
+              choice.tiles, workers);
+  std::printf("%-8s %-12s %12s %12s %14s %10s\n", "path", "source",
+              "connections", "ready MB/s", "generated MB/s", "ratio");
+  PrintRows({"direct", ready_port, (*server)->port()}, choice);
+  const auto proxy = LocalHaproxy::Start({ready_port, (*server)->port()});
+  if (!proxy.ok()) {
+    std::fprintf(stderr, "without HAProxy: %s\n",
+                 std::string(proxy.status().message()).c_str());
+    return 0;
   }
+  const std::vector<int>& doors = (*proxy)->doors();
+  PrintRows({"HAProxy", doors[0], doors[1]}, choice);
   return 0;
 }
 
@@ -198,18 +225,17 @@ int Run(int tiles, int rounds, int workers) {
 
 int main(int argc, char** argv) {
   CLI::App app("Served bytes per second against a ready buffer, over loopback");
-  int tiles = 2000;
-  int rounds = 5;
+  terrane::server::Choice choice{.tiles = 2000, .rounds = 5};
   int workers = static_cast<int>(std::thread::hardware_concurrency());
-  app.add_option("--tiles", tiles, "Tiles of a stream")
+  app.add_option("--tiles", choice.tiles, "Tiles of a stream")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
-  app.add_option("--rounds", rounds, "Rounds; the median counts")
+  app.add_option("--rounds", choice.rounds, "Rounds; the median counts")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   app.add_option("--workers", workers, "Worker threads of the server")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  return terrane::server::Run(tiles, rounds, workers);
+  return terrane::server::Run(choice, workers);
 }

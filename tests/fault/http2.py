@@ -80,7 +80,7 @@ class Http2Client:
             if isinstance(frame, frames.DataFrame) and frame.stream_id == stream:
                 answer += frame.data
             elif isinstance(frame, frames.HeadersFrame) and frame.stream_id == stream:
-                trailers = dict(self._decoder.decode(frame.data))
+                trailers = self.headers_of(frame)
             elif isinstance(frame, frames.RstStreamFrame) and frame.stream_id == stream:
                 raise ConnectionAbortedError(f"stream reset, error {frame.error_code}")
             elif isinstance(frame, frames.GoAwayFrame):
@@ -99,6 +99,10 @@ class Http2Client:
         elif isinstance(frame, frames.PingFrame) and "ACK" not in frame.flags:
             self.send(frames.PingFrame(0, frame.opaque_data, flags=["ACK"]))
         return frame
+
+    def headers_of(self, frame):
+        """The headers or trailers of a HeadersFrame. Each has to come here, in order."""
+        return dict(self._decoder.decode(frame.data))
 
     def _read(self, size):
         self.receive_at_least(size)

@@ -14,8 +14,10 @@ import threading
 import time
 
 import grpc
+from hyperframe import frame as frames
 
 from fault import TimedTest
+from http2 import Http2Client
 from real_server import HEALTH_WATCH, NOT_SERVING, SERVING, TERRANE, main, tiles_request, wait_until
 
 
@@ -92,6 +94,30 @@ class GentleEnd(TimedTest):
         self.assertEqual(load.failed, [])
         codes = {call["code"] for call in server.calls()}
         self.assertEqual(codes, {"OK"})
+
+    def test_a_slow_reader_gets_the_end_of_its_stream(self):
+        """The connection ends with its last stream: not before the kernel has sent what it holds of it."""
+        server = self.start_server("--drain-seconds", "15")
+        client = Http2Client(server, window=64 << 20)
+        self.addCleanup(client.close)
+        heights = 2 << 20
+        request = tiles_request(window=(0, 0, 2048, heights // 2048), tile_size=128).SerializeToString()
+        client.start_call("/terrane.v1.TerrainService/StreamTiles", request)
+        client.receive_at_least(1 << 16)
+        server.terminate()
+        bytes_read, trailers = 0, {}
+        while "grpc-status" not in trailers:
+            frame = client.next_frame()
+            if isinstance(frame, frames.DataFrame):
+                bytes_read += len(frame.data)
+                # Had the server's end of the connection gone, this would cut off what is on its way.
+                client.send(frames.WindowUpdateFrame(0, window_increment=len(frame.data)))
+                time.sleep(0.002)
+            elif isinstance(frame, frames.HeadersFrame):
+                trailers = client.headers_of(frame)
+        self.assertEqual(trailers["grpc-status"], "0")
+        self.assertGreater(bytes_read, 4 * heights)
+        self.assertEqual(server.process.wait(10), 0)
 
     def test_a_drain_that_takes_too_long_is_cut(self):
         server = self.start_server("--workers", "1", "--drain-seconds", "1")
