@@ -8,13 +8,22 @@
 namespace terrane::server {
 namespace {
 
-using Seconds = std::chrono::duration<double>;
+using Seconds = Admission::Seconds;
 
-// Calls that cost more than this are batch work.
-constexpr double kMostInteractiveSeconds = 1;
 // Of the time left, what the work may fill: the rest is for the way back, and
 // for clients that come later and take their share.
 constexpr double kFill = 0.8;
+// By how much a price may be too high.
+constexpr double kDoubt = 4;
+// Waits of less say nothing about the next one.
+constexpr double kLeastWaitSeconds = 0.02;
+// Weight of the newest stream in the slip. More of one that took longer: what
+// comes too late was work for nothing, what is refused may ask again.
+constexpr double kSlowerWeight = 1.0 / 16;
+constexpr double kFasterWeight = 1.0 / 128;
+// Bounds of the slip.
+constexpr double kLeastSlip = 0.5;
+constexpr double kMostSlip = 4;
 // Bounds of what a refused call is told to wait.
 constexpr Seconds kLeastWait{0.1};
 constexpr Seconds kMostWait{30};
@@ -37,17 +46,30 @@ WorkClass Admission::ClassOf(double seconds) {
                                            : WorkClass::kInteractive;
 }
 
+Admission::Seconds Admission::Corrected(const Expectation& expected) const {
+  std::lock_guard lock(mutex_);
+  return Seconds(expected.work + expected.wait * slip_);
+}
+
+void Admission::Learn(const Expectation& expected, double actual_seconds) {
+  if (expected.wait < kLeastWaitSeconds) return;
+  const double slip = std::clamp(
+      (actual_seconds - expected.work) / expected.wait, kLeastSlip, kMostSlip);
+  std::lock_guard lock(mutex_);
+  slip_ += (slip > slip_ ? kSlowerWeight : kFasterWeight) * (slip - slip_);
+}
+
 absl::Status Admission::Admit(const Work& work, TimeLeft left) const {
-  if (left.has_value()) {
-    const Seconds expected(workers_->ExpectedSeconds(work));
-    const Seconds allowed = *left * kFill;
-    return expected <= allowed ? absl::OkStatus() : Refusal(expected, allowed);
+  Expectation expected = Expect(work);
+  if (!left.has_value()) {
+    expected.work = 0;  // until its first message
+    const Seconds wait = Corrected(expected);
+    return wait <= patience_ ? absl::OkStatus() : Refusal(wait, patience_);
   }
-  Work first = work;
-  first.seconds = 0;
-  const Seconds expected(workers_->ExpectedSeconds(first));
-  return expected <= patience_ ? absl::OkStatus()
-                               : Refusal(expected, patience_);
+  const Seconds end = Corrected(expected);
+  const Seconds allowed = *left * kFill;
+  const double doubt = expected.wait == 0 ? kDoubt : 1;
+  return end <= allowed * doubt ? absl::OkStatus() : Refusal(end, allowed);
 }
 
 }  // namespace terrane::server

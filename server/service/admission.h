@@ -8,11 +8,17 @@
 // rest is refused at once with RESOURCE_EXHAUSTED and when to come back, which
 // is kinder than an answer that is too late.
 //
+// An overloaded server admits up to the limit, so an expectation that is a
+// little too good would have every call end a little too late. What streams
+// really waited corrects it (`slip`). A server with nothing else to do tries
+// calls that look too dear, within reason: a wrong price would last for ever.
+//
 // Threads: any.
 #ifndef TERRANE_SERVER_SERVICE_ADMISSION_H_
 #define TERRANE_SERVER_SERVICE_ADMISSION_H_
 
 #include <chrono>
+#include <mutex>
 #include <optional>
 
 #include "absl/status/status.h"
@@ -23,8 +29,9 @@ namespace terrane::server {
 
 class Admission {
  public:
+  using Seconds = std::chrono::duration<double>;
   // How long from now a call may take; nothing when it has no deadline.
-  using TimeLeft = std::optional<std::chrono::duration<double>>;
+  using TimeLeft = std::optional<Seconds>;
 
   Admission(const WorkerPool* workers, std::chrono::seconds patience)
       : workers_(workers), patience_(patience) {}
@@ -33,13 +40,21 @@ class Admission {
 
   // The class of a call of this price.
   static WorkClass ClassOf(double seconds);
+  Expectation Expect(const Work& work) const { return workers_->Expect(work); }
   // OK, or the refusal (status.h, RetryLaterError).
   absl::Status Admit(const Work& work, TimeLeft left) const;
+  // A stream of which that was expected waited for workers and worked for
+  // `actual_seconds`; that of one whose deadline passed counts, too.
+  void Learn(const Expectation& expected, double actual_seconds);
 
  private:
+  Seconds Corrected(const Expectation& expected) const;
+
   const WorkerPool* const workers_;
   const std::chrono::seconds patience_;
   PriceBook prices_;
+  mutable std::mutex mutex_;
+  double slip_ = 1;  // what calls waited, by what was expected
 };
 
 }  // namespace terrane::server

@@ -33,6 +33,7 @@ grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* PrepareCall::Start(
   share.work_class = WorkClass::kBatch;
   share.client = call->record_.client;
   share.ticket = parts.workers->NextTicket();
+  share.call = share.ticket;
   parts.workers->Submit(std::move(share),
                         [call](core::TileScratch*) { call->Run(); });
   return call.get();

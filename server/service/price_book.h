@@ -14,6 +14,9 @@
 
 namespace terrane::server {
 
+// Calls that cost more than this are batch work.
+inline constexpr double kMostInteractiveSeconds = 1;
+
 class PriceBook {
  public:
   // Seconds of one worker; `estimated` is 0 where there is none. `method` lives
@@ -25,11 +28,21 @@ class PriceBook {
     return estimated > 0 ? estimated * entry.ratio : entry.seconds;
   }
 
+  // What an interactive stream of the method takes whose request is not read.
+  double Typical(std::string_view method) const {
+    std::lock_guard lock(mutex_);
+    const auto found = entries_.find(method);
+    return (found == entries_.end() ? Entry() : found->second).interactive;
+  }
+
   // A call that came to its end took `spent`.
   void Learn(std::string_view method, double estimated, double spent) {
     std::lock_guard lock(mutex_);
     Entry& entry = entries_[method];
     entry.seconds += kWeight * (spent - entry.seconds);
+    if (spent <= kMostInteractiveSeconds) {
+      entry.interactive += kWeight * (spent - entry.interactive);
+    }
     if (estimated <= 0) return;
     const double ratio =
         std::clamp(spent / estimated, 1 / kMostRatio, kMostRatio);
@@ -43,8 +56,9 @@ class PriceBook {
   static constexpr double kMostRatio = 16;
 
   struct Entry {
-    double ratio = 1;       // of what was spent to what was estimated
-    double seconds = 1e-3;  // of a call
+    double ratio = 1;           // of what was spent to what was estimated
+    double seconds = 1e-3;      // of a call
+    double interactive = 1e-3;  // of an interactive call
   };
 
   mutable std::mutex mutex_;

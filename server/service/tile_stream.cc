@@ -51,12 +51,11 @@ void TileStream::EnterGate() {
   if (parts_.memory->Tight()) {
     return Refuse(Refusal::kMemory, ShortOfMemoryError());
   }
-  // Its price is not known yet; its client's calls before it are.
-  Work arriving = NextWork();
-  arriving.work_class = WorkClass::kInteractive;
+  const Work arriving = Arriving();
   const absl::Status refusal =
       parts_.admission->Admit(arriving, TimeLeft(*context_));
   if (!refusal.ok()) return Refuse(Refusal::kDeadline, refusal);
+  parts_.workers->SetBacklog(arriving);
   const absl::Status full =
       RetryLaterError("too many streams are waiting; try again", kRetryDelay);
   {
@@ -82,6 +81,18 @@ void TileStream::Refuse(Refusal reason, const absl::Status& refusal) {
   Advance(std::move(lock));
 }
 
+Work TileStream::Arriving() const {
+  Work work;
+  work.client = record_.client;
+  work.ticket = work.call = call_ticket_;
+  work.seconds = parts_.admission->prices().Typical(record_.method);
+  // It may be a small one among large ones: an idle server finds out.
+  if (const Admission::TimeLeft left = TimeLeft(*context_)) {
+    work.seconds = std::min(work.seconds, left->count() / 2);
+  }
+  return work;
+}
+
 Work TileStream::NextWork() const {
   Work work;
   work.client = record_.client;
@@ -90,6 +101,8 @@ Work TileStream::NextWork() const {
     work.work_class = WorkClass::kOpening;
     return work;
   }
+  work.call = call_ticket_;
+  work.goes_on = true;
   work.work_class = Admission::ClassOf(record_.estimated_seconds);
   // Batch streams of a client take turns, interactive ones come one by one.
   if (work.work_class == WorkClass::kBatch) {
@@ -122,7 +135,11 @@ absl::Status TileStream::Price() {
   }
   opening_time_ = record_.generated;
   opened_ = true;
-  return parts_.admission->Admit(NextWork(), TimeLeft(*context_));
+  const Work work = NextWork();
+  parts_.workers->SetBacklog(work);
+  expected_ = parts_.admission->Expect(work);
+  waited_before_ = record_.queued + record_.generated;
+  return parts_.admission->Admit(work, TimeLeft(*context_));
 }
 
 void TileStream::RunTask(Clock::time_point submitted,
@@ -131,7 +148,10 @@ void TileStream::RunTask(Clock::time_point submitted,
   {
     std::lock_guard lock(mutex_);
     queued_ = false;
-    if (end_.has_value()) return;  // cancelled while in the queue
+    if (end_.has_value()) {  // cancelled while in the queue
+      parts_.workers->Leave(call_ticket_);
+      return;
+    }
     running_ = true;
   }
   // Only this task touches the source and the record while it runs.
@@ -156,6 +176,18 @@ void TileStream::RunTask(Clock::time_point submitted,
                                              : made.status());
   }
   Advance(std::move(lock));
+}
+
+void TileStream::Learn() {
+  if (end_->ok()) {
+    parts_.admission->prices().Learn(record_.method, raw_seconds_,
+                                     SpentSeconds());
+  }
+  if (end_->ok() || absl::IsDeadlineExceeded(*end_)) {
+    parts_.admission->Learn(
+        expected_,
+        Seconds(record_.queued + record_.generated - waited_before_));
+  }
 }
 
 void TileStream::EndWith(const absl::Status& status) {
@@ -184,10 +216,7 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
   if (finish) {
     record_.status = *end_;
     record_.sending = sending_;
-    if (end_->ok()) {
-      parts_.admission->prices().Learn(record_.method, raw_seconds_,
-                                       SpentSeconds());
-    }
+    Learn();
   }
   // Once unlocked the stream can end at any time, and then lets go of itself.
   const std::shared_ptr<TileStream> keep = self_;
@@ -231,6 +260,7 @@ void TileStream::EndIfStalledSince(Clock::time_point moment) {
 }
 
 void TileStream::OnDone() {
+  parts_.workers->Leave(call_ticket_);
   if (ticket_.has_value()) parts_.gate->Leave(*ticket_);
   parts_.calls->Close(&record_);
   self_.reset();

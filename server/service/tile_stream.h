@@ -57,6 +57,8 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   // stream may end at any time from here on, so the task brings its own share
   // of it.
   static void Submit(std::shared_ptr<TileStream> stream);
+  // The stream before its request is read: what such streams usually are.
+  Work Arriving() const;
   // What the next task is a part of. Under the mutex, or before the first one.
   Work NextWork() const;
   // On workers, for the messages behind the first one.
@@ -64,6 +66,8 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   // Prices the stream, whose source is open; OK when it can end in time.
   absl::Status Price();
   void RunTask(Clock::time_point submitted, core::TileScratch* scratch);
+  // From an end, for the streams to come. Under the mutex.
+  void Learn();
   // Ends the stream with a status, unless it has one.
   void EndWith(const absl::Status& status);
   // Does what can be done now: write, generate, finish. Takes the lock over.
@@ -95,8 +99,10 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   std::chrono::nanoseconds sending_{0};  // over all writes
   bool cancelling_ = false;  // the watch ends it, and needs the context
   bool opened_ = false;
-  std::chrono::nanoseconds opening_time_{0};  // on a worker
-  double raw_seconds_ = 0;                    // what the source estimates
+  std::chrono::nanoseconds opening_time_{0};   // on a worker
+  double raw_seconds_ = 0;                     // what the source estimates
+  Expectation expected_;                       // of its end, once admitted
+  std::chrono::nanoseconds waited_before_{0};  // and on workers, until then
   bool all_made_ = false;
   std::optional<absl::Status> end_;  // set early by a failure or OnCancel
   bool finished_ = false;

@@ -19,6 +19,7 @@ grpc::ServerUnaryReactor* UnaryCall::Start(const ServiceParts& parts,
   Work share;
   share.client = record.client;
   share.ticket = parts.workers->NextTicket();
+  share.call = share.ticket;
   share.seconds = record.estimated_seconds;
   const absl::Status refusal =
       parts.admission->Admit(share, TimeLeft(*context));

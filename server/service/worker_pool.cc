@@ -1,6 +1,5 @@
 #include "server/service/worker_pool.h"
 
-#include <chrono>
 #include <utility>
 
 namespace terrane::server {
@@ -23,25 +22,37 @@ WorkerPool::~WorkerPool() {
 void WorkerPool::Submit(Work work, Task task) {
   {
     std::lock_guard lock(mutex_);
+    if (work.call != 0) backlog_.AddTask(work);
     queue_.Push(std::move(work), std::move(task));
   }
   wake_.notify_one();
 }
 
-double WorkerPool::ExpectedSeconds(const Work& work) const {
+void WorkerPool::SetBacklog(const Work& work) {
   std::lock_guard lock(mutex_);
-  return queue_.ExpectedSeconds(work, static_cast<int>(threads_.size()));
+  backlog_.Set(work);
+}
+
+void WorkerPool::Leave(std::uint64_t call) {
+  std::lock_guard lock(mutex_);
+  backlog_.Remove(call);
+}
+
+Expectation WorkerPool::Expect(const Work& work) const {
+  const Clock::time_point now = Clock::now();
+  std::lock_guard lock(mutex_);
+  return backlog_.Expect(work, static_cast<int>(threads_.size()), now);
 }
 
 WorkerPool::Load WorkerPool::load() const {
+  const Clock::time_point now = Clock::now();
   std::lock_guard lock(mutex_);
   return {static_cast<int>(threads_.size()), busy_,
-          queue_.BacklogSeconds(WorkClass::kInteractive),
-          queue_.BacklogSeconds(WorkClass::kBatch)};
+          backlog_.Seconds(WorkClass::kInteractive, now),
+          backlog_.Seconds(WorkClass::kBatch, now)};
 }
 
 void WorkerPool::Run() {
-  using Clock = std::chrono::steady_clock;
   core::TileScratch scratch;
   std::unique_lock lock(mutex_);
   while (true) {
@@ -53,10 +64,12 @@ void WorkerPool::Run() {
     const Clock::time_point start = Clock::now();
     taken.task(&scratch);
     taken.task = nullptr;  // what the task held goes without the lock
-    const std::chrono::duration<double> spent = Clock::now() - start;
+    const Clock::time_point end = Clock::now();
+    const std::chrono::duration<double> spent = end - start;
     lock.lock();
     --busy_;
     queue_.Finish(taken.work, spent.count());
+    backlog_.EndTask(taken.work, spent.count(), end);
   }
 }
 

@@ -3,7 +3,7 @@
 // gRPC's threads only hand work over; everything that costs more than a few
 // microseconds runs here, on as many threads as the machine gives. A task is
 // one message of a stream (or one unary call), after which its stream queues
-// again; whose turn it is says FairQueue.
+// again; whose turn it is says FairQueue, and how long it would take Backlog.
 //
 // Each thread owns a TileScratch, so working memory is that of `threads` tiles.
 // Threads: any. The destructor runs what is queued and joins.
@@ -11,6 +11,7 @@
 #define TERRANE_SERVER_SERVICE_WORKER_POOL_H_
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "core/terrain/terrain.h"
+#include "server/service/backlog.h"
 #include "server/service/fair_queue.h"
 
 namespace terrane::server {
@@ -42,16 +44,22 @@ class WorkerPool {
   // The place of a new call in the order of calls.
   std::uint64_t NextTicket() { return ++last_ticket_; }
   void Submit(Work work, Task task);
-  // How long from now `work` would take to end.
-  double ExpectedSeconds(const Work& work) const;
+  // Counts what a call has left to do before it has a task, or anew.
+  void SetBacklog(const Work& work);
+  // The call has no more tasks.
+  void Leave(std::uint64_t call);
+  Expectation Expect(const Work& work) const;
   Load load() const;
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void Run();
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   FairQueue queue_;
+  Backlog backlog_;
   int busy_ = 0;
   bool stopping_ = false;
   std::atomic<std::uint64_t> last_ticket_ = 0;

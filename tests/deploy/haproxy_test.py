@@ -11,6 +11,7 @@ import os
 import pathlib
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -31,6 +32,9 @@ import rapid_reset  # noqa: E402
 # 64 MB: more than all buffers on the way hold.
 WORLD = ["terrain", "--seed", "7", "--level", "6", "--window", "0,0,4096,4096"]
 CONFIGURATION = processes.DEPLOY / "haproxy"
+SECONDS_PER_TEST = 20
+# The contract: what an attack on the proxy may cost a replica.
+MOST_MIB = 50
 
 
 class ConfigurationTest(unittest.TestCase):
@@ -83,6 +87,12 @@ def sha256(file):
 
 class HaproxyTest(unittest.TestCase):
     def setUp(self):
+        def too_long(*_):
+            raise TimeoutError(f"the test took more than {SECONDS_PER_TEST} s")
+
+        signal.signal(signal.SIGALRM, too_long)
+        signal.alarm(SECONDS_PER_TEST)
+        self.addCleanup(signal.alarm, 0)
         self.replicas = []
         self.addCleanup(self.stop_replicas)
         for _ in range(2):
@@ -175,10 +185,35 @@ class HaproxyTest(unittest.TestCase):
         print(f"{resets} streams reset; MiB before {before}, at most {most}; {polite.calls[1]} polite calls")
         self.assertGreater(resets, 20_000)
         for at_first, at_most in zip(before, most):
-            self.assertLess(at_most, at_first + 50)
+            self.assertLess(at_most, at_first + MOST_MIB)
         # Who comes from elsewhere was served all the while.
         self.assertGreater(polite.calls[1], 20)
         self.assertLessEqual(len(polite.calls[0]), 0.05 * polite.calls[1], polite.calls[0])
+
+    def test_a_continuation_flood_stays_at_the_proxy(self):
+        before = [replica.resident_mib() for replica in self.replicas]
+        block = rapid_reset.header_block(__method="POST", __scheme="http", __path="/terrane.v1.TerrainService/StreamTiles",
+                                         __authority="localhost", content_type="application/grpc", te="trailers")
+        more = rapid_reset.frame(rapid_reset.CONTINUATION, 0, 1, rapid_reset.header_block(x_evil="x" * 120)) * 500
+        sent = 0
+        with load(self.proxy.address) as polite:
+            for _ in range(8):
+                with socket.create_connection(("127.0.0.1", self.proxy.port), timeout=1,
+                                              source_address=(rapid_reset.ATTACKER, 0)) as attacker:
+                    try:
+                        # Headers that never end.
+                        attacker.sendall(rapid_reset.PREFACE + rapid_reset.frame(rapid_reset.SETTINGS, 0, 0)
+                                         + rapid_reset.frame(rapid_reset.HEADERS, 0, 1, block))
+                        while sent < 64 << 20:
+                            attacker.sendall(more)
+                            sent += len(more)
+                    except OSError:
+                        pass  # cut off
+        self.assertLess(sent, 64 << 20)
+        for at_first, replica in zip(before, self.replicas):
+            self.assertLess(replica.resident_mib(), at_first + MOST_MIB)
+        self.assertGreater(polite.calls[1], 0)
+        self.assertEqual(polite.calls[0], [])
 
 
 class Load:
@@ -197,7 +232,7 @@ class Load:
             stub = terrain_pb2_grpc.TerrainServiceStub(channel)
             while not self.stopped.is_set():
                 try:
-                    list(stub.StreamTiles(request, timeout=30))
+                    list(stub.StreamTiles(request, timeout=5))
                 except grpc.RpcError as error:
                     failures.append(f"{error.code()}: {error.details()}")
                 calls += 1

@@ -137,7 +137,7 @@ class BrokenConnections(FaultTest):
 
     def test_a_continuation_flood_takes_no_more_than_it_sends(self):
         """gRPC 1.51 keeps headers that never end (CVE-2023-33953). Behind the proxy nothing comes of
-        it (proxy_test.py); without one it costs what the client sends, and only as long as it is there.
+        it (tests/deploy/haproxy_test.py); without one it costs what the client sends, and only as long as it is there.
         """
         self.memory_margin_bytes = 8 * ATTACK_BYTES  # the allocator gives little of it back
         for _ in range(3):

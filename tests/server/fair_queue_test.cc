@@ -1,4 +1,4 @@
-// Whose turn it is, and when a call would end, on a simulated worker.
+// Whose turn it is, on a simulated worker.
 #include "server/service/fair_queue.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,6 @@
 namespace terrane::server {
 namespace {
 
-using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 
 Work Of(const std::string& client, double seconds,
@@ -50,7 +49,6 @@ TEST(FairQueueTest, ClientsTakeTurnsWhateverTheyQueued) {
   EXPECT_EQ(Count(Serve(&queue, 6))["polite"], 3);
   Serve(&queue, 97);
   EXPECT_TRUE(queue.empty());
-  EXPECT_EQ(queue.BacklogSeconds(WorkClass::kInteractive), 0);
 }
 
 TEST(FairQueueTest, TimeIsSharedNotTasks) {
@@ -131,57 +129,16 @@ TEST(FairQueueTest, OpeningComesBeforeBoth) {
   EXPECT_EQ(Count(Serve(&queue, 21))["b"], 20);
 }
 
-TEST(FairQueueTest, ExpectsTheFinishOfTheFluidModel) {
-  FairQueue queue;
-  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 2), 1), 2);
-  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 2), 4), 0.5);
-  Push(&queue, Of("greedy", 1), 100);
-  // It gets as much as the one who asks, no more; its own goes behind itself.
-  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 2), 1), 4);
-  EXPECT_EQ(queue.ExpectedSeconds(Of("greedy", 2), 1), 102);
-  Push(&queue, Of("small", 0.5));
-  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 2), 1), 4.5);
-  // Batch work in the other class takes a tenth, and no more than it has.
-  Push(&queue, Of("batch", 0.1, WorkClass::kBatch));
-  EXPECT_THAT(queue.ExpectedSeconds(Of("a", 2), 1), DoubleNear(4.6, 1e-9));
-  Push(&queue, Of("batch", 100, WorkClass::kBatch));
-  EXPECT_THAT(queue.ExpectedSeconds(Of("a", 2), 1), DoubleNear(5.0, 1e-9));
-}
-
-TEST(FairQueueTest, BatchCallsOfAClientTakeTurns) {
-  FairQueue queue;
-  Push(&queue, Of("a", 1000, WorkClass::kBatch), 2);
-  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 5, WorkClass::kBatch), 1), 15);
-  const FairQueue::Taken taken = queue.Pop();
-  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 5, WorkClass::kBatch), 1), 15);
-  // Without a price: when its first message would come.
-  EXPECT_EQ(queue.ExpectedSeconds(Of("a", 0, WorkClass::kBatch), 1), 0);
-  queue.Finish(taken.work, 1);
-}
-
-TEST(FairQueueTest, TheExpectationHoldsOnASimulatedWorker) {
-  FairQueue queue;
-  Push(&queue, Of("greedy", 0.01), 500);
-  Push(&queue, Of("other", 0.01), 30);
-  // 40 tasks whose last one ends the call.
-  const double expected = queue.ExpectedSeconds(Of("mine", 0.4), 1);
-  Push(&queue, Of("mine", 0.01), 40);
-  double now = 0;
-  for (int mine = 0; mine < 40;) {
-    const FairQueue::Taken taken = queue.Pop();
-    queue.Finish(taken.work, 0.01);
-    now += 0.01;
-    mine += taken.work.client == "mine" ? 1 : 0;
-  }
-  EXPECT_NEAR(now, expected, 0.05);
-}
-
 TEST(PriceBookTest, LearnsByMethod) {
   PriceBook prices;
   EXPECT_EQ(prices.Price("A", 2), 2);
   for (int k = 0; k < 200; ++k) prices.Learn("A", 1, 3);
   EXPECT_NEAR(prices.Price("A", 2), 6, 0.01);
   EXPECT_NEAR(prices.Price("A", 0), 3, 0.01);
+  // Batch calls do not make the interactive ones look dear.
+  EXPECT_EQ(prices.Typical("A"), prices.Typical("B"));
+  for (int k = 0; k < 200; ++k) prices.Learn("A", 0.1, 0.3);
+  EXPECT_NEAR(prices.Typical("A"), 0.3, 0.01);
   EXPECT_EQ(prices.Price("B", 2), 2);
   // One strange call does not make a method unusable.
   prices.Learn("A", 1e-9, 100);

@@ -55,14 +55,17 @@ TEST(WorkerPoolTest, TellsWhatThereIsToDo) {
   WorkerPool pool(1);
   std::latch at_work(1);
   std::latch go(1);
-  pool.Submit({.client = "a", .seconds = 2}, [&](core::TileScratch*) {
-    at_work.count_down();
-    go.wait();
-  });
+  pool.Submit({.client = "a", .seconds = 2, .call = 1},
+              [&](core::TileScratch*) {
+                at_work.count_down();
+                go.wait();
+              });
   at_work.wait();
-  pool.Submit({.client = "a", .seconds = 3}, [](core::TileScratch*) {});
-  pool.Submit({.work_class = WorkClass::kBatch, .client = "b", .seconds = 7},
+  pool.Submit({.client = "a", .seconds = 3, .call = 2},
               [](core::TileScratch*) {});
+  pool.Submit(
+      {.work_class = WorkClass::kBatch, .client = "b", .seconds = 7, .call = 3},
+      [](core::TileScratch*) {});
   const WorkerPool::Load load = pool.load();
   EXPECT_EQ(load.workers, 1);
   EXPECT_EQ(load.busy, 1);
@@ -132,10 +135,11 @@ TEST(AdmissionTest, IsByTheExpectedFinish) {
   Admission admission(&pool, std::chrono::seconds(10));
   std::latch at_work(1);
   std::latch go(1);
-  pool.Submit({.client = "a", .seconds = 8}, [&](core::TileScratch*) {
-    at_work.count_down();
-    go.wait();
-  });
+  pool.Submit({.client = "a", .seconds = 8, .call = 1},
+              [&](core::TileScratch*) {
+                at_work.count_down();
+                go.wait();
+              });
   at_work.wait();
   const auto left = [](double seconds) {
     return std::chrono::duration<double>(seconds);
@@ -148,11 +152,54 @@ TEST(AdmissionTest, IsByTheExpectedFinish) {
       admission.Admit({.client = "a", .seconds = 1}, left(10));
   EXPECT_TRUE(absl::IsResourceExhausted(refused));
   EXPECT_EQ(RetryDelayOf(refused), std::chrono::milliseconds(1000));
-  pool.Submit({.client = "a", .seconds = 3}, [](core::TileScratch*) {});
+  pool.Submit({.client = "a", .seconds = 3, .call = 2},
+              [](core::TileScratch*) {});
   EXPECT_FALSE(admission.Admit({.client = "a", .seconds = 1}, {}).ok());
   EXPECT_EQ(Admission::ClassOf(0.5), WorkClass::kInteractive);
   EXPECT_EQ(Admission::ClassOf(2), WorkClass::kBatch);
   go.count_down();
+}
+
+// An admission whose one worker is at work for as long as the object lives, on
+// a call of ten seconds of client "a".
+struct BusyAdmission {
+  BusyAdmission() {
+    pool.Submit({.client = "a", .seconds = 10, .call = 1},
+                [this](core::TileScratch*) { go.wait(); });
+  }
+  ~BusyAdmission() { go.count_down(); }
+  bool Admits(double work_seconds, double left_seconds) const {
+    return admission
+        .Admit({.client = "a", .seconds = work_seconds, .call = 2},
+               Admission::Seconds(left_seconds))
+        .ok();
+  }
+
+  std::latch go{1};
+  WorkerPool pool{1};
+  Admission admission{&pool, std::chrono::seconds(10)};
+};
+
+TEST(AdmissionTest, CorrectsItsExpectationByWhatCallsWaited) {
+  BusyAdmission busy;
+  EXPECT_TRUE(busy.Admits(1, 15));
+  for (int k = 0; k < 200; ++k) busy.admission.Learn({1, 10}, 16);
+  EXPECT_FALSE(busy.Admits(1, 15));  // 1 + 1.5 * 10 within 0.8 * 15
+  EXPECT_TRUE(busy.Admits(1, 21));
+  // What did not wait says nothing, and one strange call next to nothing.
+  for (int k = 0; k < 200; ++k) busy.admission.Learn({1, 1e-3}, 16);
+  busy.admission.Learn({1, 10}, 1000);
+  EXPECT_TRUE(busy.Admits(1, 23));
+}
+
+TEST(AdmissionTest, AnIdleServerTriesWhatLooksALittleTooDear) {
+  WorkerPool pool(1);
+  const Admission admission(&pool, std::chrono::seconds(10));
+  const Work dear = {.client = "a", .seconds = 2, .call = 1};
+  EXPECT_TRUE(admission.Admit(dear, Admission::Seconds(1)).ok());
+  EXPECT_FALSE(admission.Admit(dear, Admission::Seconds(0.1)).ok());
+  BusyAdmission busy;
+  EXPECT_FALSE(busy.Admits(2, 1));
 }
 
 class CpuQuotaTest : public ::testing::Test {

@@ -31,7 +31,7 @@ from real_server import SERVING, TERRANE, RealServer, endless_request, tiles_req
 from terrane.v1 import raster_pb2, raster_pb2_grpc  # noqa: E402
 
 # Small stores, full after seconds; connections that age, so that many come and go.
-FLAGS = ("--raster-store-mib", "16", "--prepared-mib", "64", "--max-connection-age-seconds", "10", "--log-level", "warning")
+FLAGS = ("--raster-store-mib", "16", "--prepared-mib", "4", "--max-connection-age-seconds", "10", "--log-level", "warning")
 MIX = "tiles=6,profiles=2,surfaces=1,trees=1,flowers=1"
 # What the last quarter may lie above the second one.
 MOST_MIB, MOST_FILES, MOST_THREADS = 16, 8, 2
@@ -43,17 +43,17 @@ class Sampler(threading.Thread):
 
     def __init__(self, server):
         super().__init__()
-        self._server, self._stop = server, threading.Event()
+        self._server, self._ended = server, threading.Event()
         self.samples = []
 
     def run(self):
-        while not self._stop.wait(1):
+        while not self._ended.wait(1):
             status = pathlib.Path(f"/proc/{self._server.process.pid}/status").read_text(encoding="ascii")
             self.samples.append({"mib": self._server.resident_bytes() / (1 << 20), "files": self._server.open_files(),
                                  "threads": int(status.split("Threads:")[1].split()[0])})
 
     def stop(self):
-        self._stop.set()
+        self._ended.set()
         self.join()
 
     def quarter(self, number, what):
@@ -67,7 +67,7 @@ class Nuisances(threading.Thread):
 
     def __init__(self, server, seed):
         super().__init__()
-        self._server, self._random, self._stop = server, random.Random(seed), threading.Event()
+        self._server, self._random, self._ended = server, random.Random(seed), threading.Event()
         self.done = 0
         self.error = None
 
@@ -75,19 +75,19 @@ class Nuisances(threading.Thread):
         deeds = [self.leaves_early, self.goes_without_a_word, self.reads_nothing, self.asks_nonsense, self.has_no_time,
                  self.uploads]
         try:
-            while not self._stop.wait(0.05):
+            while not self._ended.wait(0.05):
                 self._random.choice(deeds)()
                 self.done += 1
         except Exception as error:  # pylint: disable=broad-except # told at the end
             self.error = error
 
     def stop(self):
-        self._stop.set()
+        self._ended.set()
         self.join()
 
     def leaves_early(self):
         with self._server.channel() as channel:
-            stream = self._server.terrain(channel).StreamTiles(endless_request(), timeout=10)
+            stream = self._server.terrain(channel).StreamTiles(endless_request())  # with a deadline it would be refused
             next(stream)
             stream.cancel()
 
@@ -157,12 +157,12 @@ def soak(minutes):
                     for entry in run["codes"]:
                         codes[entry["code"]] = codes.get(entry["code"], 0) + int(entry["count"])
                 rounds += 1
+                assert nuisances.error is None, f"a nuisance failed: {nuisances.error!r}"
                 if rounds % 6 == 1:
                     print(f"{sum(codes.values())} calls, {nuisances.done} nuisances, {sampler.samples[-1]}", flush=True)
         finally:
             for thread in reversed(threads):
                 thread.stop()
-        assert nuisances.error is None, f"a nuisance failed: {nuisances.error!r}"
         assert wait_until(server.is_idle), "something is still being computed"
         with server.channel() as channel:
             assert server.health(channel) == SERVING
