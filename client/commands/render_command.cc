@@ -28,7 +28,7 @@ void AddPictureOptions(CLI::App* app, RenderCommand* command) {
   app->add_option("--exaggeration", command->exaggeration,
                   "Multiplies the heights (default: 1; perspective: so that "
                   "the relief is a ninth of the width)")
-      ->check(CLI::PositiveNumber)
+      ->check(AboveZero())
       ->group("Picture");
   app->add_option("--water-level", command->water_level,
                   "Heights below are drawn as a sheet of water")

@@ -132,7 +132,7 @@ void AddTracedOptions(CLI::App* command, TracedOptions* options) {
   command
       ->add_option("--passes", options->passes,
                    "Traced: samples a pixel (default: 64)")
-      ->check(CLI::PositiveNumber)
+      ->check(AboveZero())
       ->group(group);
   command
       ->add_option("--bounces", options->bounces,
@@ -156,7 +156,7 @@ void AddTracedOptions(CLI::App* command, TracedOptions* options) {
   command
       ->add_option("--exposure", options->exposure,
                    "Traced: multiplies the light of a PNG (default: 1)")
-      ->check(CLI::PositiveNumber)
+      ->check(AboveZero())
       ->group(group);
   command
       ->add_option("--progress", options->progress,

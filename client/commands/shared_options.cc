@@ -82,6 +82,17 @@ std::string CheckServer(const std::string& text) {
 
 }  // namespace
 
+CLI::Validator AboveZero() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double number = 0;
+        return CLI::detail::lexical_cast(text, number) && number > 0
+                   ? std::string()
+                   : "must be above 0, got " + text;
+      },
+      "above 0", "ABOVE ZERO");
+}
+
 void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
   command
       ->add_option("--server", options->server,

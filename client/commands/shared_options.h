@@ -24,6 +24,9 @@ CLI::Validator OneOf(const std::map<std::string, Value>& names) {
   return CLI::CheckedTransformer(names, CLI::ignore_case).description("");
 }
 
+// A number above 0. (CLI11's own check prints the largest double in full.)
+CLI::Validator AboveZero();
+
 // Who answers.
 struct ConnectionOptions {
   std::string server = "127.0.0.1:50051";

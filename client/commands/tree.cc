@@ -174,7 +174,7 @@ void AddForestOptions(CLI::App* app, TreeCommand* command) {
           ->group("Forest");
   CLI::Option* count =
       app->add_option("--count", forest->count, "Trees, on a square grid")
-          ->check(CLI::PositiveNumber)
+          ->check(AboveZero())
           ->needs(flag)
           ->excludes(placements)
           ->group("Forest");
@@ -226,7 +226,7 @@ void AddMeshOptions(CLI::App* app, TreeCommand* command) {
       ->group("Mesh");
   app->add_option("--metres-per-unit", files->metres_per_unit,
                   "What the recipe's unit is in .glb (default: 1)")
-      ->check(CLI::PositiveNumber)
+      ->check(AboveZero())
       ->group("Mesh");
 }
 
