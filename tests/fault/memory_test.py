@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A control group with little memory: work is refused before the kernel ends the process.
+"""Little memory, by a control group or by a flag: work is refused before there is none left.
 
 Usage: memory_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
 """
@@ -32,21 +32,8 @@ def make_group(name):
     return group
 
 
-class LittleMemory(TimedTest):
-    # What is kept is bounded to a third of the limit; streams make tiles of 4 MiB.
-    FLAGS = ("--raster-store-mib", "32", "--prepared-mib", "32", "--max-streams", "4", "--workers", "2")
-
-    def setUp(self):
-        super().setUp()
-        if is_sanitized():
-            self.skipTest("AddressSanitizer alone takes more than the limit")
-        try:
-            self.group = make_group(f"terrane-fault-{os.getpid()}")
-        except OSError as error:
-            self.skipTest(f"no control group of one's own: {error}")
-        self.addCleanup(self.group.rmdir)
-        enter = f'echo $$ >"{self.group}/cgroup.procs" && exec "$@"'
-        self.server = self.start_server(*self.FLAGS, wrapper=("sh", "-c", enter, "sh"))
+class Flooded(TimedTest):
+    """Uploads of 16 MiB and streams of 4 MiB tiles, sixty at a time."""
 
     def upload(self, number):
         """16 MiB to be kept."""
@@ -65,7 +52,7 @@ class LittleMemory(TimedTest):
                 next(stream)
             stream.cancel()
 
-    def test_the_server_refuses_before_it_is_killed(self):
+    def assert_survives_a_flood(self, before_the_end=lambda: None):
         done, refused = [], []
 
         def ask(action, number):
@@ -87,8 +74,45 @@ class LittleMemory(TimedTest):
         with self.server.channel() as channel:
             self.assertEqual(self.server.health(channel), SERVING)
             self.assertEqual(*self.server.golden_hash(channel))
+        before_the_end()
         self.server.terminate()
         self.assertEqual(self.server.process.wait(10), 0)
+
+
+class LittleMemory(Flooded):
+    # What is kept is bounded to a third of the limit; streams make tiles of 4 MiB.
+    FLAGS = ("--raster-store-mib", "32", "--prepared-mib", "32", "--max-streams", "4", "--workers", "2")
+
+    def setUp(self):
+        super().setUp()
+        if is_sanitized():
+            self.skipTest("AddressSanitizer alone takes more than the limit")
+        try:
+            self.group = make_group(f"terrane-fault-{os.getpid()}")
+        except OSError as error:
+            self.skipTest(f"no control group of one's own: {error}")
+        self.addCleanup(self.group.rmdir)
+        enter = f'echo $$ >"{self.group}/cgroup.procs" && exec "$@"'
+        self.server = self.start_server(*self.FLAGS, wrapper=("sh", "-c", enter, "sh"))
+
+    def test_the_server_refuses_before_it_is_killed(self):
+        self.assert_survives_a_flood()
+
+
+class MemoryLimitFlag(Flooded):
+    def setUp(self):
+        super().setUp()
+        if is_sanitized():
+            self.skipTest("AddressSanitizer alone takes more than the limit")
+        # The stores take their quarters of the limit by themselves.
+        self.server = self.start_server("--memory-limit-mib", str(LIMIT_BYTES >> 20), "--max-streams", "4", "--workers", "2")
+
+    def most_bytes(self):
+        status = pathlib.Path(f"/proc/{self.server.process.pid}/status").read_text(encoding="ascii")
+        return int(status.split("VmHWM:")[1].split()[0]) * 1024
+
+    def test_the_process_stays_below_it(self):
+        self.assert_survives_a_flood(lambda: self.assertLess(self.most_bytes(), LIMIT_BYTES))
 
 
 if __name__ == "__main__":
