@@ -336,6 +336,13 @@ class GrpcCallMaker final : public CallMaker {
   const std::vector<Connection> connections_;
 };
 
+// gRPC 1.51 now and then frees the queue of its callbacks twice when the last
+// channel that used it goes. So one stays for as long as the process.
+void KeepOne(const std::shared_ptr<grpc::Channel>& channel) {
+  static const auto* const kept = new std::shared_ptr<grpc::Channel>(channel);
+  static_cast<void>(kept);
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<CallMaker>> MakeGrpcCalls(
@@ -346,6 +353,7 @@ absl::StatusOr<std::unique_ptr<CallMaker>> MakeGrpcCalls(
     const absl::StatusOr<std::shared_ptr<grpc::Channel>> channel =
         OpenChannel(server, security, ChannelKind::kOwnConnection);
     if (!channel.ok()) return channel.status();
+    KeepOne(*channel);
     opened.emplace_back(*channel);
   }
   return std::make_unique<GrpcCallMaker>(std::move(opened), clients, workload);

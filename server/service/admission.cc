@@ -60,12 +60,13 @@ void Admission::Learn(const Expectation& expected, double actual_seconds) {
 }
 
 absl::Status Admission::Admit(const Work& work, TimeLeft left) const {
-  Expectation expected = Expect(work);
   if (!left.has_value()) {
-    expected.work = 0;  // until its first message
-    const Seconds wait = Corrected(expected);
+    Work first = work;
+    first.seconds = 0;  // until its first message
+    const Seconds wait = Corrected(Expect(first));
     return wait <= patience_ ? absl::OkStatus() : Refusal(wait, patience_);
   }
+  const Expectation expected = Expect(work);
   const Seconds end = Corrected(expected);
   const Seconds allowed = *left * kFill;
   const double doubt = expected.wait == 0 ? kDoubt : 1;

@@ -25,7 +25,8 @@ class PriceBook {
     std::lock_guard lock(mutex_);
     const auto found = entries_.find(method);
     const Entry entry = found == entries_.end() ? Entry() : found->second;
-    return estimated > 0 ? estimated * entry.ratio : entry.seconds;
+    return estimated > 0 ? estimated * entry.spent / entry.estimated
+                         : entry.seconds;
   }
 
   // What an interactive stream of the method takes whose request is not read.
@@ -44,9 +45,12 @@ class PriceBook {
       entry.interactive += kWeight * (spent - entry.interactive);
     }
     if (estimated <= 0) return;
-    const double ratio =
-        std::clamp(spent / estimated, 1 / kMostRatio, kMostRatio);
-    entry.ratio += kWeight * (ratio - entry.ratio);
+    // Averages of both and not of their ratio: a tiny call that took ten times
+    // as long as it should says little about a large one.
+    const double bounded =
+        std::clamp(spent, estimated / kMostRatio, estimated * kMostRatio);
+    entry.spent += kWeight * (bounded - entry.spent);
+    entry.estimated += kWeight * (estimated - entry.estimated);
   }
 
  private:
@@ -56,7 +60,8 @@ class PriceBook {
   static constexpr double kMostRatio = 16;
 
   struct Entry {
-    double ratio = 1;           // of what was spent to what was estimated
+    double spent = 1e-3;        // of a call that was estimated,
+    double estimated = 1e-3;    // and what was estimated of it
     double seconds = 1e-3;      // of a call
     double interactive = 1e-3;  // of an interactive call
   };

@@ -140,6 +140,9 @@ TEST(PriceBookTest, LearnsByMethod) {
   for (int k = 0; k < 200; ++k) prices.Learn("A", 0.1, 0.3);
   EXPECT_NEAR(prices.Typical("A"), 0.3, 0.01);
   EXPECT_EQ(prices.Price("B", 2), 2);
+  // Small calls that are mostly overhead say little about a large one.
+  for (int k = 0; k < 3; ++k) prices.Learn("A", 1e-4, 2e-3);
+  EXPECT_NEAR(prices.Price("A", 2), 6, 0.1);
   // One strange call does not make a method unusable.
   prices.Learn("A", 1e-9, 100);
   EXPECT_LT(prices.Price("A", 2), 8);

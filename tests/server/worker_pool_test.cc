@@ -192,6 +192,15 @@ TEST(AdmissionTest, CorrectsItsExpectationByWhatCallsWaited) {
   EXPECT_TRUE(busy.Admits(1, 23));
 }
 
+TEST(AdmissionTest, BatchCallsWithoutADeadlineTakeTurnsWhateverTheyCost) {
+  BusyAdmission busy;
+  Work endless = {.work_class = WorkClass::kBatch, .client = "a", .call = 2};
+  endless.seconds = 1e6;
+  busy.pool.SetBacklog(endless);
+  endless.call = 3;
+  EXPECT_TRUE(busy.admission.Admit(endless, std::nullopt).ok());
+}
+
 TEST(AdmissionTest, AnIdleServerTriesWhatLooksALittleTooDear) {
   WorkerPool pool(1);
   const Admission admission(&pool, std::chrono::seconds(10));
