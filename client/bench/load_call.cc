@@ -337,10 +337,10 @@ class GrpcCallMaker final : public CallMaker {
 };
 
 // gRPC 1.51 now and then frees the queue of its callbacks twice when the last
-// channel that used it goes. So one stays for as long as the process.
+// channel that used it goes. So the first one stays for as long as the process.
 void KeepOne(const std::shared_ptr<grpc::Channel>& channel) {
-  static const auto* const kept = new std::shared_ptr<grpc::Channel>(channel);
-  static_cast<void>(kept);
+  static auto& kept = *new std::vector<std::shared_ptr<grpc::Channel>>;
+  if (kept.empty()) kept.push_back(channel);
 }
 
 }  // namespace
