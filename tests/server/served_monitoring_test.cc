@@ -35,41 +35,6 @@ v1::StreamTilesRequest Tiles(int count) {
   return request;
 }
 
-// As many streams as a server takes that has room for one: it runs, four stand
-// in line. The next one is turned away.
-class FullLine {
- public:
-  FullLine() { options_.limits.max_concurrent_streams = 1; }
-  const ServerOptions& options() const { return options_; }
-
-  // True once a stream was turned away.
-  bool Fill(const Served& served) {
-    for (int i = 0; i < 5; ++i) {
-      contexts_.push_back(std::make_unique<grpc::ClientContext>());
-      readers_.push_back(
-          served.terrain->StreamTiles(contexts_.back().get(), Tiles(1)));
-    }
-    return Eventually([&served] {
-      // It might come before the fifth and stand in line itself.
-      grpc::ClientContext context;
-      context.set_deadline(std::chrono::system_clock::now() +
-                           std::chrono::milliseconds(300));
-      return served.terrain->StreamTiles(&context, Tiles(1))
-                 ->Finish()
-                 .error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
-    });
-  }
-  void Cancel() {
-    for (const auto& context : contexts_) context->TryCancel();
-  }
-
- private:
-  ServerOptions options_ = WithHttp();
-  std::vector<std::unique_ptr<grpc::ClientContext>> contexts_;
-  std::vector<std::unique_ptr<grpc::ClientReader<v1::StreamTilesResponse>>>
-      readers_;
-};
-
 Exposition Scrape(Served* served) {
   return Exposition(
       HttpBody(HttpGet(*served->server().http_port(), "/metrics")));
@@ -86,6 +51,41 @@ template <typename Condition>
 bool EventuallyScraped(Served* served, Condition condition) {
   return Eventually([&] { return condition(Scrape(served)); });
 }
+
+// As many streams as a server takes that has room for one: it runs, four stand
+// in line. The next one is turned away.
+class FullLine {
+ public:
+  FullLine() { options_.limits.max_concurrent_streams = 1; }
+  const ServerOptions& options() const { return options_; }
+
+  // True when a stream was turned away, once five had come.
+  bool Fill(Served* served) {
+    for (int i = 0; i < 5; ++i) {
+      contexts_.push_back(std::make_unique<grpc::ClientContext>());
+      readers_.push_back(
+          served->terrain->StreamTiles(contexts_.back().get(), Tiles(1)));
+    }
+    // Each counts as a millisecond, at least, from its arrival on.
+    const bool all_came = EventuallyScraped(served, [](const Exposition& text) {
+      return text["terrane_backlog_seconds{class=\"interactive\"}"] > 0.0045;
+    });
+    grpc::ClientContext context;
+    return all_came &&
+           served->terrain->StreamTiles(&context, Tiles(1))
+                   ->Finish()
+                   .error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+  }
+  void Cancel() {
+    for (const auto& context : contexts_) context->TryCancel();
+  }
+
+ private:
+  ServerOptions options_ = WithHttp();
+  std::vector<std::unique_ptr<grpc::ClientContext>> contexts_;
+  std::vector<std::unique_ptr<grpc::ClientReader<v1::StreamTilesResponse>>>
+      readers_;
+};
 
 // The lines of the log about calls, each of which must be a JSON object.
 std::vector<nlohmann::json> CallLines(const std::string& log) {
@@ -200,7 +200,7 @@ TEST(ServedMetricsTest, RefusedAndCancelledStreamsCount) {
   actor.tiles().hold = true;
   FullLine line;
   Served served(&actor, line.options());
-  ASSERT_TRUE(line.Fill(served));
+  ASSERT_TRUE(line.Fill(&served));
   EXPECT_TRUE(EventuallyScraped(&served, [](const Exposition& text) {
     return Calls(text, "StreamTiles", "RESOURCE_EXHAUSTED") >= 1 &&
            text["terrane_refusals_total{reason=\"streams\"}"] ==
@@ -355,7 +355,7 @@ TEST(ServedLogTest, ReasonsOfRefusals) {
   actor.tiles().hold = true;
   FullLine line;
   Served served(&actor, line.options());
-  ASSERT_TRUE(line.Fill(served));
+  ASSERT_TRUE(line.Fill(&served));
   line.Cancel();
   bool refused = false;
   for (const auto& call : CallLines(served.StopAndReadLog())) {
