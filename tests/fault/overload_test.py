@@ -44,7 +44,7 @@ class Overload(FaultTest):
         all_before, stolen_before = processor_times()
         (closed,) = self.bench("--concurrency", 4)
         capacity = closed["goodput_per_second"]
-        (flood,) = self.bench("--rate", 8 * capacity, "--clients", 8, "--greedy", 0.95, "--max-in-flight", 20000)
+        (flood,) = self.bench("--rate", 8 * max(capacity, 1), "--clients", 8, "--greedy", 0.95, "--max-in-flight", 20000)
         codes = {entry["code"]: entry["count"] for entry in flood["codes"]}
         # The first client is the greedy one.
         polite = flood["fairness"]["clients"][1:]
