@@ -8,7 +8,9 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -68,7 +70,8 @@ std::string Configuration(const std::vector<int>& ports,
 }
 
 absl::StatusOr<std::string> WriteTemporary(const std::string& text) {
-  std::string name = "/tmp/terrane-haproxy-XXXXXX";
+  std::string name =
+      std::filesystem::temp_directory_path() / "terrane-haproxy-XXXXXX";
   const int fd = mkstemp(name.data());
   if (fd < 0) return absl::UnavailableError("no temporary file");
   close(fd);
