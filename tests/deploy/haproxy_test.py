@@ -175,7 +175,7 @@ class HaproxyTest(unittest.TestCase):
         request = terrain_pb2.StreamTilesRequest(level=16, window=common_pb2.Window(width=65536, height=65536))
         request.terrain.recipe.seed = 5
         before = most = [replica.resident_mib() for replica in self.replicas]
-        with concurrent.futures.ProcessPoolExecutor(4) as attackers, load(self.proxy.address) as polite:
+        with concurrent.futures.ProcessPoolExecutor(4) as attackers, load(self.proxy.address, deadline=5) as polite:
             attacks = [attackers.submit(rapid_reset.attack, self.proxy.port, "/terrane.v1.TerrainService/StreamTiles",
                                         request.SerializeToString(), 5) for _ in range(4)]
             while not all(attack.done() for attack in attacks):
@@ -219,8 +219,8 @@ class HaproxyTest(unittest.TestCase):
 class Load:
     """Small streams, one after another on each of four channels, without any retry."""
 
-    def __init__(self, address):
-        self.address, self.stopped = address, threading.Event()
+    def __init__(self, address, deadline):
+        self.address, self.deadline, self.stopped = address, deadline, threading.Event()
         self.pool = concurrent.futures.ThreadPoolExecutor(4)
         self.running = [self.pool.submit(self.run) for _ in range(4)]
 
@@ -232,7 +232,7 @@ class Load:
             stub = terrain_pb2_grpc.TerrainServiceStub(channel)
             while not self.stopped.is_set():
                 try:
-                    list(stub.StreamTiles(request, timeout=5))
+                    list(stub.StreamTiles(request, timeout=self.deadline))
                 except grpc.RpcError as error:
                     failures.append(f"{error.code()}: {error.details()}")
                 calls += 1
@@ -248,9 +248,9 @@ class Load:
 
 
 @contextlib.contextmanager
-def load(address):
+def load(address, deadline=15):
     """Load while the block runs; what it saw is in `calls` afterwards."""
-    running = Load(address)
+    running = Load(address, deadline)
     try:
         yield running
     finally:
