@@ -1,8 +1,10 @@
 #include "server/service/memory_watch.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <utility>
 #include <vector>
@@ -15,6 +17,8 @@ namespace {
 constexpr std::chrono::milliseconds kReadingAge{50};
 // New streams are refused above this share of the limit.
 constexpr double kTightShare = 0.9;
+// Giving memory back takes milliseconds.
+constexpr std::chrono::seconds kGiveBackEvery{1};
 // Version 1 writes no limit as the largest number of whole pages.
 constexpr std::int64_t kUnlimited = std::int64_t{1} << 62;
 
@@ -24,6 +28,21 @@ std::optional<std::int64_t> LimitIn(const std::filesystem::path& file) {
   std::int64_t bytes = 0;
   if (!(in >> bytes) || bytes >= kUnlimited) return std::nullopt;
   return bytes;
+}
+
+// Gives the kernel what was freed and is still with the allocator, which would
+// count against the limit for ever. True when it was time to do so.
+bool GiveBackFreed() {
+  using Clock = std::chrono::steady_clock;
+  static std::atomic<Clock::time_point> last = Clock::time_point();
+  const Clock::time_point now = Clock::now();
+  Clock::time_point before = last;
+  if (now - before < kGiveBackEvery ||
+      !last.compare_exchange_strong(before, now)) {
+    return false;
+  }
+  malloc_trim(0);
+  return true;
 }
 
 }  // namespace
@@ -72,9 +91,14 @@ std::int64_t MemoryWatch::ResidentBytes() {
 }
 
 bool MemoryWatch::Tight() {
-  return limit_bytes_.has_value() &&
-         static_cast<double>(ResidentBytes()) >
-             kTightShare * static_cast<double>(*limit_bytes_);
+  if (!limit_bytes_.has_value()) return false;
+  const double most = kTightShare * static_cast<double>(*limit_bytes_);
+  if (static_cast<double>(ResidentBytes()) <= most) return false;
+  if (GiveBackFreed()) {
+    std::lock_guard lock(mutex_);
+    read_at_.reset();
+  }
+  return static_cast<double>(ResidentBytes()) > most;
 }
 
 }  // namespace terrane::server

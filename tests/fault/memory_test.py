@@ -12,7 +12,7 @@ import grpc
 import numpy
 
 from fault import TimedTest
-from real_server import SERVING, is_sanitized, main, tiles_request
+from real_server import SERVING, is_sanitized, main, tiles_request, wait_until
 from terrane.v1 import raster_pb2, raster_pb2_grpc
 
 LIMIT_BYTES = 192 << 20
@@ -52,6 +52,14 @@ class Flooded(TimedTest):
                 next(stream)
             stream.cancel()
 
+    def takes_streams(self, channel):
+        try:
+            self.server.golden_hash(channel)
+        except grpc.RpcError as error:
+            self.assertEqual(error.code(), grpc.StatusCode.RESOURCE_EXHAUSTED)
+            return False
+        return True
+
     def assert_survives_a_flood(self, before_the_end=lambda: None):
         done, refused = [], []
 
@@ -73,6 +81,7 @@ class Flooded(TimedTest):
         self.assertEqual(set(refused), {grpc.StatusCode.RESOURCE_EXHAUSTED})
         with self.server.channel() as channel:
             self.assertEqual(self.server.health(channel), SERVING)
+            self.assertTrue(wait_until(lambda: self.takes_streams(channel)), "memory stays tight")
             self.assertEqual(*self.server.golden_hash(channel))
         before_the_end()
         self.server.terminate()
