@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <thread>
 #include <vector>
 
@@ -315,8 +316,10 @@ TEST(ServedLogTest, LinesTellTraceTimesAndReason) {
     v1::GetHeightsResponse response;
     EXPECT_TRUE(served.terrain->GetHeights(&context, {}, &response).ok());
   }
-  const auto lines = CallLines(served.StopAndReadLog());
+  auto lines = CallLines(served.StopAndReadLog());
   ASSERT_EQ(lines.size(), 2U);
+  // A call's line comes a moment after its answer, so perhaps after the next's.
+  if (!lines[0].contains("trace_id")) std::swap(lines[0], lines[1]);
   EXPECT_EQ(lines[0]["trace_id"], "4bf92f3577b34da6a3ce929d0e0e4736");
   EXPECT_FALSE(lines[1].contains("trace_id"));
   for (const auto& line : lines) {
