@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/server/exposition.h"
