@@ -15,6 +15,7 @@
 #include <string>
 #include <thread>
 
+#include "absl/synchronization/mutex.h"
 #include "server/actor/actor.h"
 #include "server/flags.h"
 #include "server/service/server.h"
@@ -78,6 +79,9 @@ int Serve(const Flags& flags) {
 }
 
 int Main(int argc, char** argv) {
+  // gRPC's locks are Abseil's, which look for deadlocks at every step in
+  // Debian's package, as if it were a debug build.
+  absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   Flags flags;
   if (const auto exit_code = ParseFlags(argc, argv, &flags)) return *exit_code;
   const int exit_code = Serve(flags);

@@ -231,7 +231,7 @@ void AddReportOptions(CLI::App* command, BenchCommand* options) {
           ->add_option("--server-pid", options->server_pid,
                        "Process of a server on this machine: its CPU time and "
                        "memory")
-          ->check(CLI::PositiveNumber)
+          ->check(AboveZero())
           ->group(kGroup);
   command
       ->add_option("--server-metrics", options->server_metrics,

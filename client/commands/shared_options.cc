@@ -93,6 +93,17 @@ CLI::Validator AboveZero() {
       "above 0", "ABOVE ZERO");
 }
 
+CLI::Validator NotNegative() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double number = 0;
+        return CLI::detail::lexical_cast(text, number) && number >= 0
+                   ? std::string()
+                   : "must not be below 0, got " + text;
+      },
+      "0 or above", "NOT NEGATIVE");
+}
+
 void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
   command
       ->add_option("--server", options->server,

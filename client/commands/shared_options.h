@@ -24,8 +24,10 @@ CLI::Validator OneOf(const std::map<std::string, Value>& names) {
   return CLI::CheckedTransformer(names, CLI::ignore_case).description("");
 }
 
-// A number above 0. (CLI11's own check prints the largest double in full.)
+// Numbers above 0, and from 0. (CLI11's own checks print the largest double in
+// full.)
 CLI::Validator AboveZero();
+CLI::Validator NotNegative();
 
 // Who answers.
 struct ConnectionOptions {

@@ -159,7 +159,7 @@ void AddVerifyCommand(CLI::App* app, Action* action) {
       ->add_option("--tolerance", command->tolerance,
                    "Largest error that passes, in height units (default: exact "
                    "on samples)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(NotNegative());
   subcommand->add_flag("--json", command->json, "Print JSON");
   subcommand->footer(kFooter);
   subcommand->final_callback([command, action] {

@@ -51,26 +51,31 @@ Admission::Seconds Admission::Corrected(const Expectation& expected) const {
   return Seconds(expected.work + expected.wait * slip_);
 }
 
-void Admission::Learn(const Expectation& expected, double actual_seconds) {
+void Admission::Learn(const Expectation& expected, double actual_seconds,
+                      bool cut_short) {
   if (expected.wait < kLeastWaitSeconds) return;
   const double slip = std::clamp(
       (actual_seconds - expected.work) / expected.wait, kLeastSlip, kMostSlip);
   std::lock_guard lock(mutex_);
+  if (cut_short && slip < slip_) return;
   slip_ += (slip > slip_ ? kSlowerWeight : kFasterWeight) * (slip - slip_);
 }
 
-absl::Status Admission::Admit(const Work& work, TimeLeft left) const {
+absl::StatusOr<Expectation> Admission::Admit(const Work& work,
+                                             TimeLeft left) const {
+  const Expectation expected = workers_->Expect(work);
   if (!left.has_value()) {
     Work first = work;
     first.seconds = 0;  // until its first message
-    const Seconds wait = Corrected(Expect(first));
-    return wait <= patience_ ? absl::OkStatus() : Refusal(wait, patience_);
+    const Seconds wait = Corrected(workers_->Expect(first));
+    if (wait <= patience_) return expected;
+    return Refusal(wait, patience_);
   }
-  const Expectation expected = Expect(work);
   const Seconds end = Corrected(expected);
   const Seconds allowed = *left * kFill;
   const double doubt = expected.wait == 0 ? kDoubt : 1;
-  return end <= allowed * doubt ? absl::OkStatus() : Refusal(end, allowed);
+  if (end <= allowed * doubt) return expected;
+  return Refusal(end, allowed);
 }
 
 }  // namespace terrane::server

@@ -21,7 +21,7 @@
 #include <mutex>
 #include <optional>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "server/service/price_book.h"
 #include "server/service/worker_pool.h"
 
@@ -40,12 +40,12 @@ class Admission {
 
   // The class of a call of this price.
   static WorkClass ClassOf(double seconds);
-  Expectation Expect(const Work& work) const { return workers_->Expect(work); }
-  // OK, or the refusal (status.h, RetryLaterError).
-  absl::Status Admit(const Work& work, TimeLeft left) const;
+  // What is expected of it, or the refusal (status.h, RetryLaterError).
+  absl::StatusOr<Expectation> Admit(const Work& work, TimeLeft left) const;
   // A stream of which that was expected waited for workers and worked for
-  // `actual_seconds`; that of one whose deadline passed counts, too.
-  void Learn(const Expectation& expected, double actual_seconds);
+  // `actual_seconds`. One that was `cut_short` would have taken longer still.
+  void Learn(const Expectation& expected, double actual_seconds,
+             bool cut_short);
 
  private:
   Seconds Corrected(const Expectation& expected) const;

@@ -171,7 +171,7 @@ std::optional<int> Server::http_port() const {
 }
 
 Server::~Server() {
-  if (server_ != nullptr) Drain({}, {});
+  if (server_ != nullptr && !drained_) Drain({}, {});
 }
 
 void Server::SetServing(bool serving) {
@@ -183,6 +183,7 @@ void Server::SetServing(bool serving) {
 
 void Server::Drain(std::chrono::milliseconds grace,
                    std::chrono::milliseconds drain) {
+  drained_ = true;
   SetServing(false);
   std::this_thread::sleep_for(grace);
   acceptor_->Stop();

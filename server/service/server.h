@@ -78,7 +78,7 @@ class Server {
   // The ordered end: health says NOT_SERVING and /readyz 503, `grace` lets
   // balancers see it, then no new connection or call is taken and the running
   // calls have `drain` to end, and their readers to take what was sent, before
-  // they are cancelled.
+  // they are cancelled. The server is over then: once.
   void Drain(std::chrono::milliseconds grace, std::chrono::milliseconds drain);
 
  private:
@@ -110,6 +110,7 @@ class Server {
   SpotTableServiceImpl spot_table_service_;
   InfoServiceImpl info_service_;
   std::atomic<bool> ready_ = false;
+  bool drained_ = false;
   // Last, so that they go first: no call outlives what it works with.
   std::unique_ptr<grpc::Server> server_;
   // Hands connections to the server.

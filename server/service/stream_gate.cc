@@ -1,6 +1,5 @@
 #include "server/service/stream_gate.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace terrane::server {
@@ -12,18 +11,23 @@ std::optional<StreamGate::Ticket> StreamGate::Enter(Entrant entrant) {
   {
     std::lock_guard lock(mutex_);
     ticket = ++last_ticket_;
+    const auto client = clients_.try_emplace(entrant.client).first;
     if (active_.size() < max_active_) {
-      ++clients_[entrant.client].active;
-      active_.emplace(ticket, entrant.client);
+      ++client->second.active;
+      active_.emplace(ticket, client);
       start = std::move(entrant.start);
     } else {
       if (waiting_.size() >= max_waiting_) {
-        const std::optional<Ticket> loser = Loser(entrant.client);
-        if (!loser.has_value()) return std::nullopt;
-        refuse = TakeWaiting(*loser).refuse;
+        const auto loser = Loser(client);
+        if (loser == clients_.end()) {
+          Forget(client);
+          return std::nullopt;
+        }
+        const Ticket last = loser->second.waiting.rbegin()->first;
+        refuse = TakeWaiting(loser, last).refuse;
       }
-      ++clients_[entrant.client].waiting;
-      waiting_.emplace(ticket, std::move(entrant));
+      client->second.waiting.emplace(ticket, std::move(entrant));
+      waiting_.emplace(ticket, client);
     }
   }
   if (refuse) refuse();
@@ -35,54 +39,65 @@ void StreamGate::Leave(Ticket ticket) {
   std::function<void()> start;
   {
     std::lock_guard lock(mutex_);
-    if (waiting_.contains(ticket)) TakeWaiting(ticket);
+    if (const auto found = waiting_.find(ticket); found != waiting_.end()) {
+      TakeWaiting(found->second, ticket);
+      return;
+    }
     const auto left = active_.find(ticket);
     if (left == active_.end()) return;
-    --clients_[left->second].active;
+    --left->second->second.active;
     Forget(left->second);
     active_.erase(left);
-    if (waiting_.empty()) return;
-    const auto next = std::min_element(
-        waiting_.begin(), waiting_.end(), [this](const auto& a, const auto& b) {
-          return clients_[a.second.client].active <
-                 clients_[b.second.client].active;
-        });
-    const Ticket next_ticket = next->first;
-    Entrant entrant = TakeWaiting(next_ticket);
-    ++clients_[entrant.client].active;
-    active_.emplace(next_ticket, std::move(entrant.client));
-    start = std::move(entrant.start);
+    const auto next = Next();
+    if (next == clients_.end()) return;
+    const Ticket first = next->second.waiting.begin()->first;
+    ++next->second.active;
+    active_.emplace(first, next);
+    start = TakeWaiting(next, first).start;
   }
   start();
 }
 
-std::optional<StreamGate::Ticket> StreamGate::Loser(const std::string& client) {
-  std::size_t most = clients_[client].waiting + 1;
-  std::optional<Ticket> loser;
-  // From the last one on: of two clients alike the later stream goes.
-  for (auto one = waiting_.rbegin(); one != waiting_.rend(); ++one) {
-    const std::size_t waiting = clients_[one->second.client].waiting;
-    if (waiting > most) {
-      most = waiting;
-      loser = one->first;
+StreamGate::Clients::iterator StreamGate::Loser(Clients::iterator newcomer) {
+  // Of two clients alike the later stream goes; the newcomer's is the last.
+  std::pair most(newcomer->second.waiting.size() + 1, last_ticket_);
+  auto loser = clients_.end();
+  for (auto one = clients_.begin(); one != clients_.end(); ++one) {
+    const auto& waiting = one->second.waiting;
+    if (waiting.empty()) continue;
+    const std::pair its(waiting.size(), waiting.rbegin()->first);
+    if (its > most) {
+      most = its;
+      loser = one;
     }
   }
-  Forget(client);
   return loser;
 }
 
-StreamGate::Entrant StreamGate::TakeWaiting(Ticket ticket) {
-  Entrant entrant = std::move(waiting_.extract(ticket).mapped());
-  --clients_[entrant.client].waiting;
-  Forget(entrant.client);
+StreamGate::Clients::iterator StreamGate::Next() {
+  auto next = clients_.end();
+  for (auto one = clients_.begin(); one != clients_.end(); ++one) {
+    if (one->second.waiting.empty()) continue;
+    const auto place = [](Clients::iterator client) {
+      return std::pair(client->second.active,
+                       client->second.waiting.begin()->first);
+    };
+    if (next == clients_.end() || place(one) < place(next)) next = one;
+  }
+  return next;
+}
+
+StreamGate::Entrant StreamGate::TakeWaiting(Clients::iterator client,
+                                            Ticket ticket) {
+  Entrant entrant = std::move(client->second.waiting.extract(ticket).mapped());
+  waiting_.erase(ticket);
+  Forget(client);
   return entrant;
 }
 
-void StreamGate::Forget(const std::string& client) {
-  const auto found = clients_.find(client);
-  if (found != clients_.end() && found->second.active == 0 &&
-      found->second.waiting == 0) {
-    clients_.erase(found);
+void StreamGate::Forget(Clients::iterator client) {
+  if (client->second.active == 0 && client->second.waiting.empty()) {
+    clients_.erase(client);
   }
 }
 

@@ -4,7 +4,8 @@
 // ends, a stream of the client with the fewest open ones starts, of these the
 // one that came first. When the line is full, the client with the most streams
 // in it loses its last one: a client that asks for a thousand streams waits for
-// itself and not before the others.
+// itself and not before the others. What either costs grows with the clients
+// and not with the streams: a storm of refusals must stay cheap.
 //
 // Threads: any. `start` and `refuse` run on a thread that enters or leaves, and
 // only hand work over.
@@ -18,6 +19,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 namespace terrane::server {
 
@@ -45,23 +47,27 @@ class StreamGate {
  private:
   struct Client {
     std::size_t active = 0;
-    std::size_t waiting = 0;
+    std::map<Ticket, Entrant> waiting;  // first come first
   };
+  using Clients = std::map<std::string, Client>;
 
-  // Who must go so that one more stream of `client` can wait: a stream in line,
-  // or the newcomer itself (nothing).
-  std::optional<Ticket> Loser(const std::string& client);
+  // Whose last stream must go so that one more of `newcomer` can wait, or the
+  // end when that is the newcomer's.
+  Clients::iterator Loser(Clients::iterator newcomer);
+  // Whose first stream in line goes next; the end when the line is empty.
+  Clients::iterator Next();
   // Takes a stream out of the line.
-  Entrant TakeWaiting(Ticket ticket);
-  void Forget(const std::string& client);
+  Entrant TakeWaiting(Clients::iterator client, Ticket ticket);
+  // Drops a client that has no streams.
+  void Forget(Clients::iterator client);
 
   const std::size_t max_active_;
   const std::size_t max_waiting_;
   std::mutex mutex_;
   Ticket last_ticket_ = 0;
-  std::map<Ticket, std::string> active_;
-  std::map<Ticket, Entrant> waiting_;  // first come first
-  std::map<std::string, Client> clients_;
+  Clients clients_;
+  std::unordered_map<Ticket, Clients::iterator> active_;
+  std::unordered_map<Ticket, Clients::iterator> waiting_;
 };
 
 }  // namespace terrane::server

@@ -52,9 +52,8 @@ void TileStream::EnterGate() {
     return Refuse(Refusal::kMemory, ShortOfMemoryError());
   }
   const Work arriving = Arriving();
-  const absl::Status refusal =
-      parts_.admission->Admit(arriving, TimeLeft(*context_));
-  if (!refusal.ok()) return Refuse(Refusal::kDeadline, refusal);
+  const auto admitted = parts_.admission->Admit(arriving, TimeLeft(*context_));
+  if (!admitted.ok()) return Refuse(Refusal::kDeadline, admitted.status());
   parts_.workers->SetBacklog(arriving);
   const absl::Status full =
       RetryLaterError("too many streams are waiting; try again", kRetryDelay);
@@ -137,9 +136,10 @@ absl::Status TileStream::Price() {
   opened_ = true;
   const Work work = NextWork();
   parts_.workers->SetBacklog(work);
-  expected_ = parts_.admission->Expect(work);
   waited_before_ = record_.queued + record_.generated;
-  return parts_.admission->Admit(work, TimeLeft(*context_));
+  const auto admitted = parts_.admission->Admit(work, TimeLeft(*context_));
+  expected_ = admitted.value_or(Expectation());
+  return admitted.status();
 }
 
 void TileStream::RunTask(Clock::time_point submitted,
@@ -183,10 +183,11 @@ void TileStream::Learn() {
     parts_.admission->prices().Learn(record_.method, raw_seconds_,
                                      SpentSeconds());
   }
-  if (end_->ok() || absl::IsDeadlineExceeded(*end_)) {
+  const bool cut_short = absl::IsDeadlineExceeded(*end_);
+  if (end_->ok() || cut_short) {
     parts_.admission->Learn(
-        expected_,
-        Seconds(record_.queued + record_.generated - waited_before_));
+        expected_, Seconds(record_.queued + record_.generated - waited_before_),
+        cut_short);
   }
 }
 

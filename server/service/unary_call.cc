@@ -21,10 +21,9 @@ grpc::ServerUnaryReactor* UnaryCall::Start(const ServiceParts& parts,
   share.ticket = parts.workers->NextTicket();
   share.call = share.ticket;
   share.seconds = record.estimated_seconds;
-  const absl::Status refusal =
-      parts.admission->Admit(share, TimeLeft(*context));
-  if (!refusal.ok()) {
-    call->Refuse(refusal);
+  const auto admitted = parts.admission->Admit(share, TimeLeft(*context));
+  if (!admitted.ok()) {
+    call->Refuse(admitted.status());
     return call.get();
   }
   parts.workers->Submit(std::move(share),

@@ -59,7 +59,7 @@ class WorkerPool {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   FairQueue queue_;
-  Backlog backlog_;
+  mutable Backlog backlog_;  // asking settles it
   int busy_ = 0;
   bool stopping_ = false;
   std::atomic<std::uint64_t> last_ticket_ = 0;

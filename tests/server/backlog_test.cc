@@ -3,8 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <map>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "server/service/fair_queue.h"
 
@@ -21,7 +26,7 @@ Work Of(const std::string& client, double seconds, std::uint64_t call = 0,
   return {work_class, client, call, seconds, call, true};
 }
 
-double Expected(const Backlog& backlog, const Work& work, int workers = 1) {
+double Expected(Backlog& backlog, const Work& work, int workers = 1) {
   const Expectation expected = backlog.Expect(work, workers, kNow);
   return expected.work + expected.wait;
 }
@@ -86,6 +91,65 @@ TEST(BacklogTest, TheNextTaskMayComeBeforeTheLastHasEnded) {
   backlog.EndTask(Of("a", 8, 1), 1, kNow);
   EXPECT_EQ(backlog.Seconds(WorkClass::kInteractive, kNow + milliseconds(1000)),
             7);
+}
+
+// What Expect promises, call by call.
+Expectation ExpectedByDefinition(const std::vector<Work>& calls,
+                                 const Work& work, int workers) {
+  const bool batch = work.work_class == WorkClass::kBatch;
+  double own = work.seconds;
+  double of_other_class = 0;
+  std::map<std::string, double> others;
+  for (const Work& call : calls) {
+    if (call.call == work.call) continue;
+    if (call.work_class != work.work_class) {
+      of_other_class += call.seconds;
+    } else if (call.client != work.client) {
+      others[call.client] += call.seconds;
+    } else if (batch) {
+      own += std::min(call.seconds, work.seconds);
+    } else if (call.call < work.call) {
+      own += call.seconds;
+    }
+  }
+  double ahead = own;
+  for (const auto& [client, seconds] : others) ahead += std::min(seconds, own);
+  ahead += std::min(ahead * (batch ? 9.0 : 1.0 / 9), of_other_class);
+  return {work.seconds, (ahead - work.seconds) / workers};
+}
+
+TEST(BacklogTest, SumsAreThoseOfTheCallsThatAreOpen) {
+  std::mt19937 random(7);
+  const auto one_of = [&](unsigned n) { return random() % n; };
+  Backlog backlog;
+  std::vector<Work> calls;
+  std::uint64_t last_call = 0;
+  for (int step = 0; step < 4000; ++step) {
+    Work work =
+        Of(std::string(1, static_cast<char>('a' + one_of(5))),
+           0.25 * static_cast<double>(one_of(9)), ++last_call,
+           one_of(2) == 0 ? WorkClass::kInteractive : WorkClass::kBatch);
+    if (!calls.empty() && one_of(2) == 0) {  // a call ends, or is set anew
+      Work& old = calls[one_of(static_cast<unsigned>(calls.size()))];
+      work.call = old.call;
+      work.client = old.client;
+      std::swap(old, calls.back());
+      calls.pop_back();
+      if (one_of(3) == 0) backlog.Remove(work.call);
+    }
+    const Expectation expected = backlog.Expect(work, 2, kNow);
+    const Expectation defined = ExpectedByDefinition(calls, work, 2);
+    ASSERT_NEAR(expected.wait, defined.wait, 1e-9) << step;
+    if (one_of(3) == 0) {
+      backlog.Remove(work.call);
+    } else {
+      backlog.AddTask(work);
+      calls.push_back(work);
+    }
+  }
+  for (const Work& call : calls) backlog.Remove(call.call);
+  EXPECT_EQ(backlog.Seconds(WorkClass::kInteractive, kNow), 0);
+  EXPECT_EQ(backlog.Seconds(WorkClass::kBatch, kNow), 0);
 }
 
 TEST(BacklogTest, WhatHasEndedIsGone) {

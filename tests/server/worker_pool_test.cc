@@ -149,7 +149,7 @@ TEST(AdmissionTest, IsByTheExpectedFinish) {
   EXPECT_TRUE(admission.Admit({.client = "b", .seconds = 1}, left(3)).ok());
   EXPECT_TRUE(admission.Admit({.client = "a", .seconds = 1}, {}).ok());
   const absl::Status refused =
-      admission.Admit({.client = "a", .seconds = 1}, left(10));
+      admission.Admit({.client = "a", .seconds = 1}, left(10)).status();
   EXPECT_TRUE(absl::IsResourceExhausted(refused));
   EXPECT_EQ(RetryDelayOf(refused), std::chrono::milliseconds(1000));
   pool.Submit({.client = "a", .seconds = 3, .call = 2},
@@ -183,13 +183,18 @@ struct BusyAdmission {
 TEST(AdmissionTest, CorrectsItsExpectationByWhatCallsWaited) {
   BusyAdmission busy;
   EXPECT_TRUE(busy.Admits(1, 15));
-  for (int k = 0; k < 200; ++k) busy.admission.Learn({1, 10}, 16);
+  for (int k = 0; k < 200; ++k) busy.admission.Learn({1, 10}, 16, false);
   EXPECT_FALSE(busy.Admits(1, 15));  // 1 + 1.5 * 10 within 0.8 * 15
   EXPECT_TRUE(busy.Admits(1, 21));
   // What did not wait says nothing, and one strange call next to nothing.
-  for (int k = 0; k < 200; ++k) busy.admission.Learn({1, 1e-3}, 16);
-  busy.admission.Learn({1, 10}, 1000);
+  for (int k = 0; k < 200; ++k) busy.admission.Learn({1, 1e-3}, 16, false);
+  busy.admission.Learn({1, 10}, 1000, false);
   EXPECT_TRUE(busy.Admits(1, 23));
+  // One that its deadline ended early, of a slow reader perhaps, was not fast.
+  for (int k = 0; k < 200; ++k) busy.admission.Learn({1, 10}, 2, true);
+  EXPECT_FALSE(busy.Admits(1, 15));
+  for (int k = 0; k < 200; ++k) busy.admission.Learn({1, 10}, 31, true);
+  EXPECT_FALSE(busy.Admits(1, 35));
 }
 
 TEST(AdmissionTest, BatchCallsWithoutADeadlineTakeTurnsWhateverTheyCost) {
