@@ -162,6 +162,7 @@ class KilledServer(TimedTest):
         self.assertIsNone(client.poll())
         second = self.start_server(listen=first.address)
         self.assertEqual(client.wait(15), 0, client.stderr.read())
+        self.assertTrue(wait_until(second.calls), "the resumed stream is not in the log")
         (call,) = second.calls()
         self.assertLess(call["tiles"], 256)  # only what was missing
         subprocess.run([TERRANE, *self.CHOICE, "--local", "--out", alone], check=True, capture_output=True)
