@@ -1,42 +1,49 @@
 // CostMeter: what a generated point, a lattice's or a row of a tree, costs on
-// this machine, as a running average of what was measured. Threads: any; a lost
-// update costs one sample of an average. Not part of any result's bytes.
+// this machine, out of running averages of what messages took and of how many
+// points they had. Averages of both and not of their ratio: the tile of a
+// single sample at the corner of a window takes a thousand times what its
+// sample does, and a worker may have been held up over it.
+//
+// Threads: any. Not part of any result's bytes.
 #ifndef TERRANE_SERVER_ACTOR_COST_METER_H_
 #define TERRANE_SERVER_ACTOR_COST_METER_H_
 
-#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 
 namespace terrane::server {
 
 class CostMeter {
  public:
-  // `first_ns` holds until something was measured; the default is a lattice
-  // point's on a slow machine.
-  explicit CostMeter(double first_ns = 5) : ns_per_point_(first_ns) {}
-
-  double ns_per_point() const {
-    return ns_per_point_.load(std::memory_order_relaxed);
-  }
+  // `first_ns` a point holds until something was measured; the default is a
+  // lattice point's on a slow machine.
+  explicit CostMeter(double first_ns = 5)
+      : points_(kFirstPoints), ns_(first_ns * kFirstPoints) {}
 
   // Of so many points.
   double Seconds(std::int64_t points) const {
-    return static_cast<double>(points) * ns_per_point() * 1e-9;
+    std::lock_guard lock(mutex_);
+    return static_cast<double>(points) * ns_ / points_ * 1e-9;
   }
 
+  // A message of so many points took `spent`.
   void Add(std::chrono::nanoseconds spent, std::int64_t points) {
     if (points <= 0) return;
-    const double measured =
-        static_cast<double>(spent.count()) / static_cast<double>(points);
-    const double average = ns_per_point();
-    ns_per_point_.store(average + kWeight * (measured - average),
-                        std::memory_order_relaxed);
+    std::lock_guard lock(mutex_);
+    points_ += kWeight * (static_cast<double>(points) - points_);
+    ns_ += kWeight * (static_cast<double>(spent.count()) - ns_);
   }
 
  private:
+  // Weight of the newest message in the averages.
   static constexpr double kWeight = 1.0 / 16;
-  std::atomic<double> ns_per_point_;
+  // What the first price counts for: points of a small message.
+  static constexpr double kFirstPoints = 4096;
+
+  mutable std::mutex mutex_;
+  double points_;  // of a message
+  double ns_;      // of the same
 };
 
 }  // namespace terrane::server

@@ -92,7 +92,7 @@ class BenchTest(unittest.TestCase):
         run = report["runs"][0]
         self.assert_sums(run)
         self.assertEqual({kind["kind"] for kind in run["kinds"]}, {"tiles", "profiles", "surfaces", "trees", "flowers"})
-        self.assertEqual([code["code"] for code in run["codes"]], ["OK"])
+        self.assertEqual([code["code"] for code in run["codes"]], ["OK"], run["codes"])
         self.assertEqual(run["good"], run["offered"])
         self.assertAlmostEqual(run["goodput_per_second"], run["good"] / run["seconds"], places=6)
         latency = run["latency"]
