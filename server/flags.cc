@@ -109,13 +109,23 @@ void AddSecurityFlags(CLI::App* app, Flags* flags) {
   app->add_option("--jwt-audience", tokens.audience,
                   "Take only tokens for this audience (aud)")
       ->needs(jwt_key);
-  app->add_option("--client-streams", flags->server.access.client_calls,
+  AccessOptions& access = flags->server.access;
+  app->add_option("--client-streams", access.client_calls,
                   "Calls of one client at a time, a token's subject or else a "
                   "host; 0: any number")
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
-  app->add_flag("--trust-forwarded-for",
-                flags->server.access.trust_forwarded_for,
+  app->add_option("--client-rate", access.client_rate,
+                  "Calls a second of one client in the long run; what comes in "
+                  "ten seconds may come at once; 0: any number")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app->add_option("--client-workers", access.client_workers,
+                  "Workers that one client may keep busy in the long run, such "
+                  "as 0.5; 0: all")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+  app->add_flag("--trust-forwarded-for", access.trust_forwarded_for,
                 "Without tokens, a client is the last address of "
                 "x-forwarded-for: for a server that only a proxy reaches");
 }

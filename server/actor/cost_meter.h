@@ -8,6 +8,7 @@
 #ifndef TERRANE_SERVER_ACTOR_COST_METER_H_
 #define TERRANE_SERVER_ACTOR_COST_METER_H_
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <mutex>
@@ -30,14 +31,19 @@ class CostMeter {
   // A message of so many points took `spent`.
   void Add(std::chrono::nanoseconds spent, std::int64_t points) {
     if (points <= 0) return;
+    const double count = static_cast<double>(points);
     std::lock_guard lock(mutex_);
-    points_ += kWeight * (static_cast<double>(points) - points_);
-    ns_ += kWeight * (static_cast<double>(spent.count()) - ns_);
+    const double most = kMostRatio * count * ns_ / points_;
+    ns_ += kWeight * (std::min(static_cast<double>(spent.count()), most) - ns_);
+    points_ += kWeight * (count - points_);
   }
 
  private:
   // Weight of the newest message in the averages.
   static constexpr double kWeight = 1.0 / 16;
+  // One message seems so many times dearer than the last ones, at most: a
+  // machine that stood still for a minute must not price calls for hours.
+  static constexpr double kMostRatio = 16;
   // What the first price counts for: points of a small message.
   static constexpr double kFirstPoints = 4096;
 

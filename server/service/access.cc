@@ -4,7 +4,9 @@
 #include <strings.h>
 
 #include <chrono>
+#include <cstdio>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -18,9 +20,12 @@ constexpr char kRead[] = "terrane.read";
 constexpr char kGenerate[] = "terrane.generate";
 constexpr char kUpload[] = "terrane.upload";
 
+using Clock = std::chrono::steady_clock;
+using Seconds = ClientAccounts::Seconds;
+
 // How long a client with all its places taken should wait: some of its calls
 // will have ended.
-constexpr std::chrono::milliseconds kRetryDelay{1000};
+constexpr Seconds kPlaceDelay{1};
 
 const std::map<std::string_view, const char*>& Scopes() {
   static const std::map<std::string_view, const char*> scopes = {
@@ -90,6 +95,35 @@ absl::Status MissingScope(std::string_view scope) {
       {std::string(kScopeMissing), "scope", name});
 }
 
+std::unique_ptr<ClientAccounts> AccountsOf(double per_second) {
+  return per_second > 0 ? std::make_unique<ClientAccounts>(per_second)
+                        : nullptr;
+}
+
+// The client has as much of `what` as it may have.
+absl::Status Exceeded(std::string_view reason, const char* what, double most,
+                      Seconds wait) {
+  char number[32];
+  std::snprintf(number, sizeof number, "%g", most);
+  char text[128];
+  std::snprintf(text, sizeof text,
+                "the client has reached its limit, %s: %s; try again in %.1f s",
+                what, number, wait.count());
+  return WithReason(
+      RetryLaterError(text, std::chrono::ceil<std::chrono::milliseconds>(wait)),
+      {std::string(reason), "most", number});
+}
+
+// OK while the client's account holds something, and where there is no limit.
+absl::Status CheckAccount(const ClientAccounts* accounts,
+                          const std::string& client, std::string_view reason,
+                          const char* what) {
+  if (accounts == nullptr) return absl::OkStatus();
+  const Seconds wait = accounts->Wait(client, Clock::now());
+  if (wait <= Seconds(0)) return absl::OkStatus();
+  return Exceeded(reason, what, accounts->per_second(), wait);
+}
+
 }  // namespace
 
 std::optional<std::string_view> ScopeOf(std::string_view method) {
@@ -99,7 +133,10 @@ std::optional<std::string_view> ScopeOf(std::string_view method) {
 }
 
 Access::Access(const AccessOptions& options)
-    : options_(options), places_(options.client_calls) {}
+    : options_(options),
+      places_(options.client_calls),
+      calls_(AccountsOf(options.client_rate)),
+      work_(AccountsOf(options.client_workers)) {}
 
 absl::StatusOr<Access> Access::Create(const AccessOptions& options) {
   Access access(options);
@@ -113,18 +150,36 @@ absl::StatusOr<Access> Access::Create(const AccessOptions& options) {
 
 absl::Status Access::Admit(const grpc::CallbackServerContext& context,
                            CallRecord* record) const {
-  const absl::Status status = Identify(context, record);
-  if (!status.ok() || options_.client_calls == 0) return status;
+  if (absl::Status status = Identify(context, record); !status.ok()) {
+    return status;
+  }
+  absl::Status status = CheckLimits(record);
+  if (!status.ok()) {
+    record->refusal = Refusal::kClientLimit;
+  } else if (calls_ != nullptr) {
+    // Only of calls that are taken: who was told to wait may come back.
+    calls_->Charge(record->client, 1, Clock::now());
+  }
+  return status;
+}
+
+absl::Status Access::CheckLimits(CallRecord* record) const {
+  absl::Status status = CheckAccount(calls_.get(), record->client,
+                                     kCallRateExceeded, "calls a second");
+  if (!status.ok()) return status;
+  status = CheckAccount(work_.get(), record->client, kWorkRateExceeded,
+                        "workers kept busy");
+  if (!status.ok()) return status;
+  if (options_.client_calls == 0) return absl::OkStatus();
   record->place = places_.Take(record->client);
   if (record->place != nullptr) return absl::OkStatus();
-  record->refusal = Refusal::kClientLimit;
-  return WithReason(
-      RetryLaterError("the client has " +
-                          std::to_string(options_.client_calls) +
-                          " calls at a time, the most allowed; try again",
-                      kRetryDelay),
-      {std::string(kTooManyCalls), "most",
-       std::to_string(options_.client_calls)});
+  return Exceeded(kTooManyCalls, "calls at a time", options_.client_calls,
+                  kPlaceDelay);
+}
+
+void Access::Settle(const CallRecord& record) const {
+  if (work_ == nullptr || record.generated.count() == 0) return;
+  work_->Charge(record.client, Seconds(record.generated).count(), Clock::now());
 }
 
 absl::Status Access::Identify(const grpc::CallbackServerContext& context,

@@ -40,7 +40,7 @@ Server::Server(const ServerOptions& options, Access access, Actor* actor,
       admission_(&workers_, options.patience),
       stalls_(options.stream_idle),
       metrics_(kServices, Gauges()),
-      calls_(log, &metrics_),
+      calls_(log, &metrics_, &access_),
       parts_{
           .actor = actor,
           .workers = &workers_,

@@ -1,37 +1,21 @@
 #!/usr/bin/python3
 """Floods of connections, and connections that misbehave, against the real server.
 
-Usage: connections_test.py TERRANE_SERVER STUBS [unittest arguments]
+Usage: connections_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
 """
 
 import contextlib
-import os
 import pathlib
 import resource
 import socket
-import sys
-import tempfile
 import time
 import unittest
 
 import grpc
 from grpc import StatusCode
 
-from real_server import INFO, all_methods, call, endless, served
-
-SERVER, STUBS = sys.argv[1:3]
-all_methods(STUBS)
-
-
-def descriptors(server):
-    """How many descriptors the server has open."""
-    return len(os.listdir(f"/proc/{server.process.pid}/fd"))
-
-
-def cpu_seconds(server):
-    """The time that the server has run on a CPU."""
-    fields = pathlib.Path(f"/proc/{server.process.pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+from edge import INFO, call, endless
+from real_server import main, served, wait_until
 
 
 def established(server):
@@ -63,73 +47,57 @@ def is_open(connection):
         return False
 
 
-def open_channel(server, *options):
-    """A channel with a connection of its own."""
-    return grpc.insecure_channel(server.address, options=[("grpc.use_local_subchannel_pool", 1), *options])
-
-
 class ConnectionsTest(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = temporary.name
-
-    def served(self, *flags, **options):
-        return served(SERVER, self.folder, *flags, **options)
-
     def eventually(self, condition, text):
-        deadline = time.monotonic() + 15
-        while not condition():
-            self.assertLess(time.monotonic(), deadline, text)
-            time.sleep(0.05)
+        self.assertTrue(wait_until(condition, 15), text)
 
     def answers(self, server):
-        with open_channel(server) as channel:
+        with server.channel() as channel:
             return call(channel, INFO)[0] == StatusCode.OK
 
     def test_a_flood_is_capped_and_leaves_nothing_behind(self):
-        with self.served("--max-connections", 20) as server:
-            before = descriptors(server)
-            with open_channel(server) as early, flood(server, 200) as sockets:
+        with served("--max-connections", 20) as server:
+            before = server.open_files()
+            with server.channel() as early, flood(server, 200) as sockets:
                 self.eventually(lambda: sum(map(is_open, sockets)) < 20, "the cap is not kept")
                 # Who was there before goes on; who comes now is turned away at once.
                 self.assertEqual(call(early, INFO)[0], StatusCode.OK)
-                self.assertLessEqual(descriptors(server), before + 2 * 20 + 5)
+                self.assertLessEqual(server.open_files(), before + 2 * 20 + 5)
             self.eventually(lambda: self.answers(server), "the places are not free again")
-            self.eventually(lambda: descriptors(server) <= before + 2, "descriptors are left open")
+            self.eventually(lambda: server.open_files() <= before + 2, "descriptors are left open")
 
     def test_the_cap_stays_below_the_limit_of_descriptors(self):
         def limit():
             resource.setrlimit(resource.RLIMIT_NOFILE, (96, 96))
-        with self.served(preexec_fn=limit) as server:
+        with served(preexec_fn=limit) as server:
             # The log is written by a thread of its own.
-            self.eventually(lambda: "connections limited" in server.log(), "the limit is not said")
+            self.eventually(lambda: "connections limited" in server.log_text(), "the limit is not said")
             with flood(server, 300) as sockets:
                 self.eventually(lambda: sum(map(is_open, sockets)) <= 24, "the cap is not kept")
-                self.assertLess(descriptors(server), 96)
+                self.assertLess(server.open_files(), 96)
             self.eventually(lambda: self.answers(server), "the server does not recover")
 
     def test_out_of_descriptors_it_waits_and_recovers(self):
-        with self.served() as server:
+        with served() as server:
             self.assertTrue(self.answers(server))
             _, most = resource.prlimit(server.process.pid, resource.RLIMIT_NOFILE)
             resource.prlimit(server.process.pid, resource.RLIMIT_NOFILE, (3, most))
             with flood(server, 30):
-                used = cpu_seconds(server)
+                used = server.cpu_seconds()
                 time.sleep(1)
-                self.assertLess(cpu_seconds(server) - used, 0.3)
+                self.assertLess(server.cpu_seconds() - used, 0.3)
             resource.prlimit(server.process.pid, resource.RLIMIT_NOFILE, (most, most))
             self.eventually(lambda: self.answers(server), "the server does not recover")
 
     def test_a_connection_that_says_nothing_is_closed(self):
-        with self.served() as server, flood(server, 3) as sockets:
+        with served() as server, flood(server, 3) as sockets:
             self.eventually(lambda: not any(map(is_open, sockets)), "silent connections stay")
 
     def test_floods_of_pings_end_the_connection_ordinary_ones_do_not(self):
-        with self.served() as server:
+        with served() as server:
             def pinged(milliseconds):
-                return open_channel(server, ("grpc.keepalive_time_ms", milliseconds), ("grpc.http2.max_pings_without_data", 0),
-                                    ("grpc.http2.min_time_between_pings_ms", 10))
+                return server.channel(**{"grpc.keepalive_time_ms": milliseconds, "grpc.http2.max_pings_without_data": 0,
+                                         "grpc.http2.min_time_between_pings_ms": 10})
             with pinged(6_000) as calm, pinged(100) as hasty:
                 streams = [endless(channel) for channel in (calm, hasty)]
                 # Nobody reads, so that only pings go over the connections.
@@ -146,7 +114,7 @@ class ConnectionsTest(unittest.TestCase):
                 streams[0].cancel()
 
     def test_an_old_connection_takes_no_new_call(self):
-        with self.served("--max-connection-age-seconds", 1) as server, open_channel(server) as channel:
+        with served("--max-connection-age-seconds", 1) as server, server.channel() as channel:
             stream = endless(channel)
             counts = [established(server)]
             for _ in range(15):
@@ -160,9 +128,9 @@ class ConnectionsTest(unittest.TestCase):
             stream.cancel()
 
     def test_a_drain_takes_no_connection_and_lets_streams_end(self):
-        with self.served() as server, open_channel(server) as channel:
+        with served() as server, server.channel() as channel:
             stream = endless(channel)
-            server.drain()
+            server.terminate()
 
             def is_refused():
                 try:
@@ -178,4 +146,4 @@ class ConnectionsTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    main()

@@ -14,7 +14,6 @@ import json
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
@@ -23,13 +22,10 @@ import grpc
 import jwt
 from grpc import StatusCode
 
-from real_server import INFO, Authority, RealServer, all_methods, call, endless, openssl, served
+from edge import INFO, TILES, Authority, all_methods, call, endless, key_pair
+from real_server import SERVER, TERRANE, RealServer, common_pb2, main, served, tiles_request, wait_until
 
-TERRANE, SERVER, STUBS = sys.argv[1:4]
-METHODS = all_methods(STUBS)
-
-from terrane.v1 import common_pb2  # noqa: E402
-
+METHODS = all_methods()
 ISSUER, AUDIENCE = "https://issuer.test", "terrane"
 
 
@@ -45,6 +41,12 @@ class EdgeTest(unittest.TestCase):
         done = subprocess.run([SERVER, "--listen", listen, *map(str, flags)], capture_output=True, text=True, timeout=20)
         self.assertEqual(done.returncode, code, done.stderr)
         return done.stderr
+
+    def assert_refused(self, answer, code, reason):
+        self.assertEqual(answer[0], code, answer[1])
+        details = common_pb2.ErrorStatus.FromString(answer[2]["grpc-status-details-bin"])
+        info = next(d for d in details.details if d.type_url.endswith("ErrorInfo"))
+        self.assertEqual(common_pb2.ErrorInfo.FromString(info.value).reason, reason)
 
     def terrane(self, *arguments, expected=0, **environment):
         done = subprocess.run([TERRANE, *map(str, arguments)], capture_output=True, text=True, timeout=60,
@@ -75,7 +77,7 @@ class TlsTest(EdgeTest):
         return subprocess.run(["openssl", "x509", "-noout", "-serial"], input=done.stdout, text=True, capture_output=True).stdout
 
     def test_calls_go_over_tls_1_2_or_later_and_nothing_else(self):
-        with served(SERVER, self.folder, *self.tls) as server:
+        with served(*self.tls) as server:
             with self.channel(server) as channel:
                 self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
             with grpc.insecure_channel(server.address) as channel:
@@ -88,7 +90,7 @@ class TlsTest(EdgeTest):
         files = [self.folder / "live.pem", self.folder / "live.key"]
         for source, file in zip((self.certificate, self.key), files):
             file.write_bytes(source.read_bytes())
-        with served(SERVER, self.folder, "--tls-cert", files[0], "--tls-key", files[1]) as server, self.channel(server) as channel:
+        with served("--tls-cert", files[0], "--tls-key", files[1]) as server, self.channel(server) as channel:
             self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
             before = self.presented(server)
             for source, file in zip(self.authority.issue("renewed"), files):
@@ -100,7 +102,7 @@ class TlsTest(EdgeTest):
             self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
 
     def test_a_client_certificate_is_demanded_and_checked(self):
-        with served(SERVER, self.folder, *self.tls, "--tls-client-ca", self.authority.certificate) as server:
+        with served(*self.tls, "--tls-client-ca", self.authority.certificate) as server:
             with self.channel(server, *self.authority.issue("client")) as channel:
                 self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
             for pair in [(), self.stranger.issue("client")]:
@@ -119,13 +121,13 @@ class TlsTest(EdgeTest):
 
     def test_other_machines_are_served_only_with_tls_or_on_demand(self):
         self.assertIn("reachable from other machines", self.refused_start(listen="0.0.0.0:0", code=2))
-        with served(SERVER, self.folder, *self.tls, listen="0.0.0.0:0") as server, self.channel(server) as channel:
+        with served(*self.tls, listen="0.0.0.0:0") as server, self.channel(server) as channel:
             self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
 
     def test_the_command_line_client_speaks_it(self):
         certificate, key = self.authority.issue("cli")
         mutual = ["--tls-client-ca", self.authority.certificate]
-        with served(SERVER, self.folder, *self.tls, *mutual) as server:
+        with served(*self.tls, *mutual) as server:
             ask = ["info", "--server", server.address]
             self.terrane(*ask, "--tls", "--tls-ca", self.authority.certificate, "--tls-cert", certificate, "--tls-key", key)
             self.terrane(*ask, TERRANE_TLS="true", TERRANE_TLS_CA=self.authority.certificate, TERRANE_TLS_CERT=certificate,
@@ -140,22 +142,15 @@ class TokenTest(EdgeTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.private, cls.public = cls.key_pair("rsa", "RSA", "rsa_keygen_bits:2048")
-        cls.ec_private, cls.ec_public = cls.key_pair("ec", "EC", "ec_paramgen_curve:P-256")
-        cls.server = RealServer(SERVER, cls.folder, "--jwt-key", cls.public, "--jwt-issuer", ISSUER, "--jwt-audience", AUDIENCE)
+        cls.private, cls.public = key_pair(cls.folder, "rsa", "RSA", "rsa_keygen_bits:2048")
+        cls.ec_private, cls.ec_public = key_pair(cls.folder, "ec", "EC", "ec_paramgen_curve:P-256")
+        cls.server = RealServer("--jwt-key", cls.public, "--jwt-issuer", ISSUER, "--jwt-audience", AUDIENCE)
         cls.channel = grpc.insecure_channel(cls.server.address)
 
     @classmethod
     def tearDownClass(cls):
         cls.channel.close()
-        assert cls.server.stop() == 0
-
-    @classmethod
-    def key_pair(cls, name, kind, option):
-        private, public = cls.folder / f"{name}.key", cls.folder / f"{name}.pub"
-        openssl("genpkey", "-algorithm", kind, "-pkeyopt", option, "-out", private)
-        openssl("pkey", "-in", private, "-pubout", "-out", public)
-        return private, public
+        assert cls.server.end() == 0
 
     def claims(self, **changes):
         claims = {"iss": ISSUER, "aud": AUDIENCE, "sub": "alice", "exp": int(time.time()) + 600, "scope": "terrane.read"}
@@ -166,12 +161,6 @@ class TokenTest(EdgeTest):
 
     def call(self, token=None, method=INFO, **options):
         return call(self.channel, method, metadata=[("authorization", f"Bearer {token}")] if token else [], **options)
-
-    def assert_refused(self, answer, code, reason):
-        self.assertEqual(answer[0], code, answer[1])
-        details = common_pb2.ErrorStatus.FromString(answer[2]["grpc-status-details-bin"])
-        info = next(d for d in details.details if d.type_url.endswith("ErrorInfo"))
-        self.assertEqual(common_pb2.ErrorInfo.FromString(info.value).reason, reason)
 
     def test_every_method_asks_for_a_token_with_its_scope(self):
         scopes = {scope: self.token(scope=f"terrane.{scope}") for scope in ("read", "generate", "upload")}
@@ -217,7 +206,7 @@ class TokenTest(EdgeTest):
         good = self.token()
         header, payload, signature = good.split(".")
         claims = json.dumps(self.claims())
-        stranger, _ = self.key_pair("stranger", "RSA", "rsa_keygen_bits:2048")
+        stranger, _ = key_pair(self.folder, "stranger", "RSA", "rsa_keygen_bits:2048")
         bad = [self.token(**changes) for changes in [
             {"exp": now - 60}, {"exp": None}, {"exp": -1000}, {"nbf": now + 120}, {"iss": "other"}, {"iss": None}, {"aud": "other"},
             {"aud": None}, {"aud": ["other"]}, {"sub": None}, {"sub": ""}, {"sub": "a" * 300}]]
@@ -237,19 +226,19 @@ class TokenTest(EdgeTest):
         twice = call(self.channel, INFO, metadata=[("authorization", f"Bearer {good}")] * 2)
         self.assert_refused(twice, StatusCode.UNAUTHENTICATED, "TOKEN_MISSING")
         self.assertEqual(self.call(good)[0], StatusCode.OK)
-        log = self.server.log()
+        log = self.server.log_text()
         self.assertIn("TOKEN_INVALID", log)
         for secret in (header, payload, signature, "alice"):
             self.assertNotIn(secret, log)
 
     def test_the_key_decides_on_the_algorithm(self):
-        with served(SERVER, self.folder, "--jwt-key", self.ec_public) as server, grpc.insecure_channel(server.address) as channel:
+        with served("--jwt-key", self.ec_public) as server, grpc.insecure_channel(server.address) as channel:
             for token, code in [(self.token(self.ec_private, "ES256"), StatusCode.OK), (self.token(), StatusCode.UNAUTHENTICATED)]:
                 self.assertEqual(call(channel, INFO, metadata=[("authorization", f"Bearer {token}")])[0], code)
 
     def test_keys_that_will_not_do_stop_the_start(self):
-        _, short = self.key_pair("short", "RSA", "rsa_keygen_bits:1024")
-        _, curve = self.key_pair("curve", "EC", "ec_paramgen_curve:P-384")
+        _, short = key_pair(self.folder, "short", "RSA", "rsa_keygen_bits:1024")
+        _, curve = key_pair(self.folder, "curve", "EC", "ec_paramgen_curve:P-384")
         for file, text in [("no-file", "cannot be read"), (self.private, "must hold a public key"), (short, "2048 bits"),
                            (curve, "P-256")]:
             self.assertIn(text, self.refused_start("--jwt-key", file, code=1))
@@ -269,11 +258,16 @@ class TokenTest(EdgeTest):
 
 
 class ClientLimitTest(EdgeTest):
+    def assert_told_to_wait(self, answer, reason):
+        """How many seconds."""
+        self.assert_refused(answer, StatusCode.RESOURCE_EXHAUSTED, reason)
+        milliseconds = int(answer[2]["grpc-retry-pushback-ms"])
+        self.assertGreater(milliseconds, 0)
+        return milliseconds / 1000
+
     def assert_counts(self, channel, one, other):
         stream = endless(channel, one)
-        code, _, trailers = call(channel, INFO, metadata=one)
-        self.assertEqual(code, StatusCode.RESOURCE_EXHAUSTED)
-        self.assertGreater(int(trailers["grpc-retry-pushback-ms"]), 0)
+        self.assert_told_to_wait(call(channel, INFO, metadata=one), "TOO_MANY_CALLS")
         self.assertEqual(call(channel, INFO, metadata=other)[0], StatusCode.OK)
         stream.cancel()
         deadline = time.monotonic() + 10
@@ -282,28 +276,59 @@ class ClientLimitTest(EdgeTest):
             time.sleep(0.05)
 
     def test_a_subject_has_its_places(self):
-        private, public = TokenTest.key_pair.__func__(type(self), "limit", "EC", "ec_paramgen_curve:P-256")
+        private, public = key_pair(self.folder, "limit", "EC", "ec_paramgen_curve:P-256")
         alice, bob = ([("authorization", "Bearer " + jwt.encode(
             {"sub": name, "exp": int(time.time()) + 600, "scope": "terrane.read terrane.generate"}, private.read_text(), "ES256"))]
             for name in ("alice", "bob"))
-        with served(SERVER, self.folder, "--jwt-key", public, "--client-streams", 1) as server:
+        with served("--jwt-key", public, "--client-streams", 1) as server:
             with grpc.insecure_channel(server.address) as channel:
                 self.assert_counts(channel, alice, bob)
 
     def test_a_host_behind_the_proxy_has_its_places(self):
         one, other = [("x-forwarded-for", "9.9.9.9, 10.0.0.1")], [("x-forwarded-for", "10.0.0.1, 2001:db8::1")]
-        with served(SERVER, self.folder, "--trust-forwarded-for", "--client-streams", 1) as server:
+        with served("--trust-forwarded-for", "--client-streams", 1) as server:
             with grpc.insecure_channel(server.address) as channel:
                 self.assert_counts(channel, one, other)
                 # What is no address counts for the proxy itself.
                 self.assert_counts(channel, [("x-forwarded-for", "nonsense")], one)
 
     def test_without_trust_the_header_is_nothing(self):
-        with served(SERVER, self.folder, "--client-streams", 1) as server, grpc.insecure_channel(server.address) as channel:
+        with served("--client-streams", 1) as server, grpc.insecure_channel(server.address) as channel:
             stream = endless(channel, [("x-forwarded-for", "10.0.0.1")])
             self.assertEqual(call(channel, INFO, metadata=[("x-forwarded-for", "10.0.0.2")])[0], StatusCode.RESOURCE_EXHAUSTED)
             stream.cancel()
 
+    ONE, OTHER = [("x-forwarded-for", "10.0.0.1")], [("x-forwarded-for", "10.0.0.2")]
+
+    def test_a_client_has_its_rate(self):
+        with served("--trust-forwarded-for", "--client-rate", 0.5) as server, server.channel() as channel:
+            taken = 0
+            while (answer := call(channel, INFO, metadata=self.ONE))[0] == StatusCode.OK:
+                taken += 1
+            # What comes in ten seconds, and the call that overdraws it.
+            self.assertIn(taken, (6, 7))
+            wait = self.assert_told_to_wait(answer, "CALL_RATE_EXCEEDED")
+            self.assertLessEqual(wait, 2)
+            # Refusals cost the client nothing.
+            for _ in range(10):
+                self.assert_told_to_wait(call(channel, INFO, metadata=self.ONE), "CALL_RATE_EXCEEDED")
+            self.assertEqual(call(channel, INFO, metadata=self.OTHER)[0], StatusCode.OK)
+            time.sleep(wait)
+            self.assertEqual(call(channel, INFO, metadata=self.ONE)[0], StatusCode.OK)
+
+    def test_a_client_pays_for_its_work(self):
+        workers = 0.001
+        with served("--trust-forwarded-for", "--client-workers", workers) as server, server.channel() as channel:
+            request = tiles_request(level=12, window=(0, 0, 4096, 4096)).SerializeToString()
+            self.assertEqual(call(channel, TILES, request, metadata=self.ONE)[0], StatusCode.OK)
+            self.assertTrue(wait_until(server.calls))
+            worked = server.calls()[0]["generate_ms"] / 1000
+            wait = self.assert_told_to_wait(call(channel, INFO, metadata=self.ONE), "WORK_RATE_EXCEEDED")
+            self.assertAlmostEqual(wait, worked / workers - 10, delta=5)
+            self.assertEqual(call(channel, INFO, metadata=self.OTHER)[0], StatusCode.OK)
+            self.assertTrue(wait_until(lambda: len(server.calls()) == 3))
+            self.assertEqual([line.get("reason") for line in server.calls()], [None, "client_limit", None])
+
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
+    main()

@@ -1,5 +1,5 @@
-// Scopes and places of clients. What tokens and metadata do is shown over the
-// network (tests/integration/security_test.py).
+// Scopes, places and accounts of clients. What tokens and metadata do is shown
+// over the network (tests/integration/security_test.py).
 #include "server/service/access.h"
 
 #include <google/protobuf/descriptor.h>
@@ -78,6 +78,45 @@ TEST(ClientPlaces, NoneIsLostBetweenThreads) {
   for (std::thread& thread : threads) thread.join();
   const auto last = places.Take("sub:alice");
   EXPECT_NE(last, nullptr);
+}
+
+using Seconds = ClientAccounts::Seconds;
+
+// A time as good as any.
+constexpr ClientAccounts::Time kStart{Seconds(1000)};
+
+TEST(ClientAccounts, HoldWhatComesInTenSecondsAndFillAgain) {
+  ClientAccounts accounts(2);
+  for (int k = 0; k < 20; ++k) {
+    EXPECT_EQ(accounts.Wait("sub:alice", kStart), Seconds(0)) << k;
+    accounts.Charge("sub:alice", 1, kStart);
+  }
+  accounts.Charge("sub:alice", 1, kStart);
+  EXPECT_EQ(accounts.Wait("sub:alice", kStart), Seconds(0.5));
+  EXPECT_EQ(accounts.Wait("sub:bob", kStart), Seconds(0));
+  EXPECT_EQ(accounts.Wait("sub:alice", kStart + Seconds(0.5)), Seconds(0));
+  // Who keeps still saves no more than that.
+  const ClientAccounts::Time later = kStart + Seconds(1e6);
+  accounts.Charge("sub:alice", 22, later);
+  EXPECT_EQ(accounts.Wait("sub:alice", later), Seconds(1));
+}
+
+TEST(ClientAccounts, ADebtIsPaidBeforeAnythingElse) {
+  ClientAccounts accounts(0.25);
+  accounts.Charge("sub:alice", 60, kStart);
+  EXPECT_EQ(accounts.Wait("sub:alice", kStart), Seconds(230));
+  EXPECT_EQ(accounts.Wait("sub:alice", kStart + Seconds(229)), Seconds(1));
+}
+
+TEST(ClientAccounts, OfThoseThatAreFullHardlyAnyIsKept) {
+  ClientAccounts accounts(10);
+  accounts.Charge("debtor", 1000, kStart);
+  for (int k = 0; k < 50'000; ++k) {
+    // A thousand new clients a second, each in need of a tenth of one.
+    accounts.Charge(std::to_string(k), 1, kStart + Seconds(k * 1e-3));
+    ASSERT_LT(accounts.size(), 1100U);
+  }
+  EXPECT_EQ(accounts.Wait("debtor", kStart + Seconds(50)), Seconds(40));
 }
 
 }  // namespace

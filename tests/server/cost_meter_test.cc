@@ -37,7 +37,14 @@ TEST(CostMeterTest, TheTileOfOneSampleHardlyCounts) {
   EXPECT_NEAR(meter.Seconds(129 * 129), 110e-6, 60e-6);
   // Nor does its worker being held up over it make it seconds.
   meter.Add(milliseconds(80), 1);
-  EXPECT_LT(meter.Seconds(129 * 129), 0.1);
+  EXPECT_LT(meter.Seconds(129 * 129), 300e-6);
+}
+
+TEST(CostMeterTest, AMachineThatStoodStillAtMostDoublesThePrice) {
+  CostMeter meter;
+  for (int k = 0; k < 200; ++k) meter.Add(microseconds(20), 4000);
+  meter.Add(std::chrono::minutes(1), 4000);
+  EXPECT_LT(meter.Seconds(4000), 40e-6);
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-"""A real terrane-server for the tests of faults and of other clients.
+"""A real terrane-server for the tests of faults, of the server's edge and of other clients.
 
 Programs that import this are called NAME TERRANE TERRANE_SERVER STUBS [unittest
 arguments] and end with main().
 """
 
+import contextlib
 import functools
 import json
 import os
@@ -80,20 +81,22 @@ def is_sanitized():
 
 
 class RealServer:
-    """One process: started at once, its log kept as JSON. Use as a context, or call kill()."""
+    """One process: started at once, its log kept as JSON. Use as a context, or call kill() or end()."""
 
-    def __init__(self, *flags, listen="127.0.0.1:0", wrapper=(), env=None):
+    def __init__(self, *flags, listen="127.0.0.1:0", wrapper=(), env=None, preexec_fn=None):
         self._log = tempfile.NamedTemporaryFile(prefix="terrane-server-", suffix=".log")
         # AddressSanitizer holds back what is freed; without that it would look like a leak.
         sanitizer = ":".join(filter(None, [os.environ.get("ASAN_OPTIONS"), "quarantine_size_mb=8"]))
         self.process = subprocess.Popen(
-            [*wrapper, SERVER, "--listen", listen, "--log-format", "json", *flags], stdout=subprocess.PIPE,
-            stderr=self._log, text=True, env={**os.environ, "ASAN_OPTIONS": sanitizer, **(env or {})})
+            [*wrapper, SERVER, "--listen", listen, "--log-format", "json", *map(str, flags)],
+            stdout=subprocess.PIPE, stderr=self._log, text=True, preexec_fn=preexec_fn,
+            env={**os.environ, "ASAN_OPTIONS": sanitizer, **(env or {})})
         line = self.process.stdout.readline()
         assert line.startswith("listening on "), (line, self.log_text())
-        self.address = line.split()[-1]
-        self.host, port = self.address.split(":")
-        self.port = int(port)
+        host, port = line.split()[-1].split(":")
+        self.host, self.port = "127.0.0.1" if host == "0.0.0.0" else host, int(port)
+        self.address = f"{self.host}:{self.port}"
+        self._draining = False
 
     def __enter__(self):
         return self
@@ -110,6 +113,15 @@ class RealServer:
 
     def terminate(self):
         self.process.send_signal(signal.SIGTERM)
+        self._draining = True
+
+    def end(self):
+        """The exit code after a drain."""
+        if not self._draining:  # a second signal would cut it short
+            self.terminate()
+        code = self.process.wait(30)
+        self.process.stdout.close()
+        return code
 
     def alive(self):
         return self.process.poll() is None
@@ -156,6 +168,17 @@ class RealServer:
         request, digest = golden_tile()
         _, tile = self.terrain(channel).StreamTiles(request, **{"timeout": 10, **options})
         return fnv1a(tile.tile.data), digest
+
+
+@contextlib.contextmanager
+def served(*flags, **options):
+    """A server for the length of a block; it must end well."""
+    server = RealServer(*flags, **options)
+    try:
+        yield server
+    finally:
+        code = server.end()
+    assert code == 0, server.log_text()
 
 
 def main():

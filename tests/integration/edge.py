@@ -1,56 +1,18 @@
-"""What the tests of the server's edge share: real servers, certificates, calls."""
+"""What the tests of the server's edge share: certificates, keys and calls."""
 
-import contextlib
 import importlib
 import pathlib
-import signal
 import subprocess
 import sys
 
 import grpc
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
 
-class RealServer:
-    """A terrane-server on a free port of 127.0.0.1, and its log."""
+from real_server import STUBS, endless_request  # noqa: E402
 
-    def __init__(self, program, folder, *flags, listen="127.0.0.1:0", **options):
-        self.log_file = pathlib.Path(folder) / f"log-{id(self)}.txt"
-        with open(self.log_file, "w", encoding="utf-8") as log:
-            self.process = subprocess.Popen(
-                [program, "--listen", listen, "--log-format", "json", *map(str, flags)],
-                stdout=subprocess.PIPE, stderr=log, text=True, **options)
-        line = self.process.stdout.readline()
-        assert line.startswith("listening on "), self.log()
-        self.port = int(line.rsplit(":", 1)[1])
-        self.draining = False
-        self.address = f"127.0.0.1:{self.port}"
-
-    def log(self):
-        return self.log_file.read_text(encoding="utf-8")
-
-    def drain(self):
-        """Sends SIGTERM, once: a second one would end the drain."""
-        if not self.draining and self.process.poll() is None:
-            self.process.send_signal(signal.SIGTERM)
-        self.draining = True
-
-    def stop(self):
-        """The exit code after a drain."""
-        self.drain()
-        code = self.process.wait(30)
-        self.process.stdout.close()
-        return code
-
-
-@contextlib.contextmanager
-def served(program, folder, *flags, **options):
-    """A server for the length of a block; it must end well."""
-    server = RealServer(program, folder, *flags, **options)
-    try:
-        yield server
-    finally:
-        code = server.stop()
-    assert code == 0, server.log()
+INFO = "/terrane.v1.InfoService/GetServerInfo"
+TILES = "/terrane.v1.TerrainService/StreamTiles"
 
 
 class Authority:
@@ -79,11 +41,18 @@ def openssl(*arguments):
     return done.stdout
 
 
-def all_methods(stubs):
+def key_pair(folder, name, kind, option):
+    """The files of a private key and of its public one."""
+    private, public = folder / f"{name}.key", folder / f"{name}.pub"
+    openssl("genpkey", "-algorithm", kind, "-pkeyopt", option, "-out", private)
+    openssl("pkey", "-in", private, "-pubout", "-out", public)
+    return private, public
+
+
+def all_methods():
     """Every rpc of terrane.v1 as its path, from the descriptors."""
-    sys.path.insert(0, str(stubs))
     methods = []
-    for file in sorted(pathlib.Path(stubs).glob("terrane/v1/*_pb2.py")):
+    for file in sorted(pathlib.Path(STUBS).glob("terrane/v1/*_pb2.py")):
         module = importlib.import_module(f"terrane.v1.{file.stem}")
         for service in module.DESCRIPTOR.services_by_name.values():
             methods += [f"/{service.full_name}/{method.name}" for method in service.methods]
@@ -103,15 +72,7 @@ def call(channel, method, request=b"", metadata=(), **options):
 
 
 def endless(channel, metadata=()):
-    """A stream that runs until it is cancelled; its header has come. After all_methods, which finds the stubs."""
-    messages = importlib.import_module("terrane.v1.terrain_pb2")
-    request = messages.StreamTilesRequest(level=20, tile_size=513)
-    request.terrain.recipe.seed = 1
-    request.window.width = request.window.height = 1 << 17
-    stream = channel.unary_stream(TILES)(request.SerializeToString(), metadata=metadata)
+    """A stream that runs until it is cancelled; its header has come."""
+    stream = channel.unary_stream(TILES)(endless_request().SerializeToString(), metadata=metadata)
     next(stream)
     return stream
-
-
-INFO = "/terrane.v1.InfoService/GetServerInfo"
-TILES = "/terrane.v1.TerrainService/StreamTiles"
