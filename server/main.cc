@@ -4,6 +4,7 @@
 // --http-listen a second one, "http on ADDRESS:PORT"; logs go to standard
 // error. SIGTERM and SIGINT drain and exit 0; a second one ends at once. Exit
 // codes: 0 ok, 1 error, 2 usage.
+#include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
@@ -24,6 +25,11 @@ namespace terrane::server {
 namespace {
 
 constexpr int kExitError = 1;
+
+// Blocks of this size and more go back to the kernel as they are freed. By
+// itself the allocator soon keeps blocks of up to 32 MiB, rasters and tiles,
+// and the holes between them count against the memory limit.
+constexpr int kReturnedBlockBytes = 1 << 20;
 
 // The signals that end the server, blocked in this thread and so in every
 // thread that it starts.
@@ -82,6 +88,7 @@ int Main(int argc, char** argv) {
   // gRPC's locks are Abseil's, which look for deadlocks at every step in
   // Debian's package, as if it were a debug build.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
+  mallopt(M_MMAP_THRESHOLD, kReturnedBlockBytes);
   Flags flags;
   if (const auto exit_code = ParseFlags(argc, argv, &flags)) return *exit_code;
   const int exit_code = Serve(flags);

@@ -14,7 +14,7 @@
 namespace terrane::server {
 namespace {
 
-constexpr std::chrono::milliseconds kReadingAge{50};
+constexpr std::chrono::milliseconds kReadingAge{5};
 // New streams are refused above this share of the limit.
 constexpr double kTightShare = 0.9;
 // Giving memory back takes milliseconds.

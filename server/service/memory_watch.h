@@ -5,8 +5,8 @@
 // above nine tenths of the limit; those it has go on and give their memory
 // back.
 //
-// Threads: any. Readings are at most 50 ms old and cost microseconds, so every
-// call may ask.
+// Threads: any. Readings are at most 5 ms old, in which uploads bring some
+// megabytes, and cost microseconds, so every call may ask.
 #ifndef TERRANE_SERVER_SERVICE_MEMORY_WATCH_H_
 #define TERRANE_SERVER_SERVICE_MEMORY_WATCH_H_
 

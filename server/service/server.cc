@@ -5,6 +5,9 @@
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server_builder.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -15,8 +18,9 @@ namespace {
 
 // Streams that may stand in line for each one that runs.
 constexpr std::size_t kWaitingPerActive = 4;
-// Buffers of tiles kept for the next ones.
-constexpr std::size_t kBufferPoolBytes = std::size_t{64} << 20;
+// Buffers of tiles kept for the next ones, and their part of a memory limit.
+constexpr std::int64_t kBufferPoolBytes = std::int64_t{64} << 20;
+constexpr std::int64_t kBufferPoolPart = 16;
 
 constexpr const char* kServices[] = {v1::TerrainService::service_full_name(),
                                      v1::SurfaceService::service_full_name(),
@@ -26,6 +30,13 @@ constexpr const char* kServices[] = {v1::TerrainService::service_full_name(),
                                      v1::RasterService::service_full_name(),
                                      v1::SpotTableService::service_full_name(),
                                      v1::InfoService::service_full_name()};
+
+std::size_t BufferPoolBytes(std::optional<std::int64_t> memory_limit_bytes) {
+  const std::int64_t part =
+      memory_limit_bytes.value_or(kBufferPoolBytes * kBufferPoolPart) /
+      kBufferPoolPart;
+  return static_cast<std::size_t>(std::min(kBufferPoolBytes, part));
+}
 
 }  // namespace
 
@@ -49,7 +60,8 @@ Server::Server(const ServerOptions& options, Access access, Actor* actor,
           .stalls = &stalls_,
           .memory = &memory_,
           .calls = &calls_,
-          .buffers = std::make_shared<BufferPool>(kBufferPoolBytes),
+          .buffers = std::make_shared<BufferPool>(
+              BufferPoolBytes(options.memory_limit_bytes)),
           .access = &access_,
           .linger = &linger_,
       },
