@@ -31,6 +31,12 @@ def dashboard_expressions():
     return [query.replace("$__rate_interval", "5m").replace("$instance", ".*") for query in queries]
 
 
+def adapter_query(field, **parts):
+    """A query of prometheus-adapter's rule, with the parts that the adapter fills in."""
+    query = re.search(f"{field}: '(.*)'", (PROMETHEUS / "adapter.yaml").read_text(encoding="utf-8"))[1]
+    return re.sub(r"<<\.(\w+)>>", lambda part: parts[part[1]], query)
+
+
 class RulesTest(unittest.TestCase):
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
@@ -69,6 +75,25 @@ class RulesTest(unittest.TestCase):
         (self.folder / "rules.yaml").write_text(json.dumps({"groups": [{"name": "dashboard", "rules": rules}]}))
         self.check("check", "rules", self.folder / "rules.yaml")
 
+    def test_the_autoscaler_gets_what_a_pod_has_of_both_classes(self):
+        autoscaler = (processes.DEPLOY / "helm/terrane/templates/autoscaler.yaml").read_text(encoding="utf-8")
+        metric = re.search(r"metric:\n\s+name: (\w+)", autoscaler)[1]
+        backlogs = {'namespace="maps",pod="a",class="interactive"': 3, 'namespace="maps",pod="a",class="batch"': 40,
+                    'namespace="maps",pod="b",class="batch"': 5, 'namespace="maps",pod="c",class="batch"': 6,
+                    'namespace="other",pod="a",class="batch"': 700, 'namespace="maps",class="batch"': 8000}
+        # Asked as for two pods of one namespace.
+        per_pod = adapter_query("metricsQuery", Series=metric, LabelMatchers='namespace="maps",pod=~"a|b"', GroupBy="pod")
+        known = f"count({adapter_query('seriesQuery')})"
+        tests = {"evaluation_interval": "1m", "tests": [{
+            "interval": "1m",
+            "input_series": [{"series": f"{metric}{{{labels}}}", "values": str(value)} for labels, value in backlogs.items()],
+            "promql_expr_test": [
+                {"expr": per_pod, "eval_time": "0m", "exp_samples": [{"labels": '{pod="a"}', "value": 43},
+                                                                     {"labels": '{pod="b"}', "value": 5}]},
+                {"expr": known, "eval_time": "0m", "exp_samples": [{"labels": "{}", "value": 5}]}]}]}
+        (self.folder / "adapter_test.yaml").write_text(json.dumps(tests))
+        self.check("test", "rules", self.folder / "adapter_test.yaml")
+
 
 class ScrapeTest(unittest.TestCase):
     @classmethod
@@ -78,11 +103,18 @@ class ScrapeTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             cls.ask("terrain", "--seed", "1", "--window", "0,0,300,200", "--out", f"{folder}/a.f32")
             cls.ask("tree", "--preset", "tree/genetic", "--out", f"{folder}/tree.glb")
-        _, cls.scrape = processes.get(cls.replica.url("/metrics"))
+        processes.wait_until(cls.both_are_counted, "two calls in the metrics")
 
     @classmethod
     def tearDownClass(cls):
         assert cls.replica.stop() == 0
+
+    @classmethod
+    def both_are_counted(cls):
+        """Whether a scrape, which is kept, has both calls: a call is counted after its answer."""
+        _, cls.scrape = processes.get(cls.replica.url("/metrics"))
+        return all(re.search(rf'^terrane_rpc_total\{{.*code="OK".*method="{method}".*\}} [1-9]', cls.scrape, re.MULTILINE)
+                   for method in ("StreamTiles", "StreamTree"))
 
     @classmethod
     def ask(cls, *arguments):
@@ -97,6 +129,7 @@ class ScrapeTest(unittest.TestCase):
         rules = (PROMETHEUS / "alerts.yaml").read_text(encoding="utf-8")
         chart = "".join(p.read_text(encoding="utf-8") for p in (processes.DEPLOY / "helm").rglob("*.yaml"))
         expressions = re.findall(r"expr: (.*?)\n\s+for:", rules, re.DOTALL) + dashboard_expressions()
+        expressions.append(adapter_query("seriesQuery"))
         asked = set(METRIC.findall(" ".join(expressions))) | set(re.findall(r"\bterrane_backlog\w+", chart))
         self.assertGreater(len(asked), 10)
         self.assertEqual(asked - series, set())
