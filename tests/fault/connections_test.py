@@ -5,10 +5,9 @@ Usage: connections_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
 """
 
 import socket
-import time
 
-from fault import FaultTest
-from real_server import main
+from fault import FaultTest, wait_until
+from real_server import PATIENCE_SECONDS, is_open, main
 
 
 class Flood(FaultTest):
@@ -20,18 +19,25 @@ class Flood(FaultTest):
         flood = []
         for _ in range(connections):
             try:
-                flood.append(socket.create_connection((self.server.host, self.server.port), timeout=5))
+                address = (self.server.host, self.server.port)
+                flood.append(socket.create_connection(address, timeout=PATIENCE_SECONDS))
             except ConnectionError:
                 continue
             self.addCleanup(flood[-1].close)
         return flood
 
     def test_connections_beyond_the_cap_cost_no_descriptor(self):
-        before = self.server.open_files()
-        self.flood(300)
-        time.sleep(0.5)
+        before = most = self.server.open_files()
+        flood = self.flood(300)
+
+        def is_capped():
+            nonlocal most
+            most = max(most, self.server.open_files())
+            return sum(map(is_open, flood)) <= self.MOST
+
+        self.assertTrue(wait_until(is_capped), "the cap is not kept")
         # A descriptor or two for each that is let in.
-        self.assertLessEqual(self.server.open_files() - before, 2 * self.MOST + 2)
+        self.assertLessEqual(most - before, 2 * self.MOST + 2)
 
     def test_who_is_connected_is_served_on(self):
         channel = self.channel()
@@ -44,8 +50,8 @@ class Flood(FaultTest):
         for _ in range(3):
             for connection in self.flood(300):
                 connection.close()
-            with self.server.channel() as channel:
-                self.assertEqual(*self.server.golden_hash(channel, timeout=5, wait_for_ready=True))
+            with self.server.channel(**{"grpc.max_reconnect_backoff_ms": 200}) as channel:
+                self.assertEqual(*self.server.golden_hash(channel, wait_for_ready=True))
 
 
 class FewDescriptors(Flood):

@@ -2,7 +2,7 @@
 
 After each test the server lives, health is SERVING, nothing is in flight, memory and
 open files are near what they were, the golden tile has its hash, and SIGTERM ends the
-process with 0 at once. Each test has 20 seconds.
+process with 0. Each test is bounded: what hangs ends after two minutes.
 """
 
 import pathlib
@@ -14,18 +14,20 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support
 
 from real_server import RealServer, SERVING, is_sanitized, wait_until  # noqa: E402
 
-SECONDS_PER_TEST = 20
+# Of which it takes a few, where nobody else wants the processors.
+SECONDS_PER_TEST = 120
 # What buffers and the allocator may keep of the work that is over: the pool of tile
 # buffers alone keeps up to 64 MiB.
 MEMORY_MARGIN_BYTES = 96 << 20
 
 
 class TimedTest(unittest.TestCase):
-    """A test that is over after 20 seconds, one way or the other."""
+    """A test that is over after two minutes, one way or the other."""
 
     def setUp(self):
         def too_long(*_):
-            raise TimeoutError(f"the test took more than {SECONDS_PER_TEST} s")
+            # No TimeoutError: a test may expect that of a socket.
+            self.fail(f"the test took more than {SECONDS_PER_TEST} s")
 
         signal.signal(signal.SIGALRM, too_long)
         signal.alarm(SECONDS_PER_TEST)
@@ -46,7 +48,8 @@ class FaultTest(TimedTest):
 
     def setUp(self):
         super().setUp()
-        self.server = self.start_server(*self.FLAGS)
+        # With a call in flight it would not end in time: see assert_well.
+        self.server = self.start_server("--drain-seconds", 10 * SECONDS_PER_TEST, *self.FLAGS)
         self.assert_golden()  # what is taken once and kept is taken now
         self.memory_before = self.server.resident_bytes()
         self.files_before = self.server.open_files()
@@ -80,12 +83,11 @@ class FaultTest(TimedTest):
         server = self.server
         self.assertTrue(server.alive(), server.log_text()[-2000:])
         self.assertTrue(wait_until(server.is_idle), "something is still being computed")
+        # First of all: connections that are not closed yet may leave no room for another.
+        self.assertTrue(wait_until(lambda: server.open_files() <= self.files_before + 2),
+                        f"{server.open_files()} open files, {self.files_before} before")
         with server.channel() as channel:
             self.assertEqual(server.health(channel), SERVING)
             self.assertEqual(*server.golden_hash(channel))
-        self.assertTrue(wait_until(lambda: server.open_files() <= self.files_before + 2),
-                        f"{server.open_files()} open files, {self.files_before} before")
         self.assert_memory_flat(self.memory_margin_bytes)
-        # A call in flight would hold the drain up for 30 seconds.
-        server.terminate()
-        self.assertEqual(server.process.wait(10), 0)
+        self.assertEqual(server.end(), 0)

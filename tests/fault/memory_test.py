@@ -12,7 +12,7 @@ import grpc
 import numpy
 
 from fault import TimedTest
-from real_server import SERVING, is_sanitized, main, tiles_request, wait_until
+from real_server import FAR_DEADLINE_SECONDS, PATIENCE_SECONDS, SERVING, is_sanitized, main, tiles_request, wait_until
 from terrane.v1 import raster_pb2, raster_pb2_grpc
 
 LIMIT_BYTES = 192 << 20
@@ -41,13 +41,16 @@ class Flooded(TimedTest):
         parts = [raster_pb2.UploadRasterRequest(header=raster_pb2.RasterHeader(width=2048, height=2048))]
         parts += [raster_pb2.UploadRasterRequest(chunk=posts[i:i + (1 << 20)]) for i in range(0, len(posts), 1 << 20)]
         with self.server.channel() as channel:
-            raster_pb2_grpc.RasterServiceStub(channel).UploadRaster(iter(parts), timeout=15)
+            raster_pb2_grpc.RasterServiceStub(channel).UploadRaster(iter(parts), timeout=FAR_DEADLINE_SECONDS)
 
     def stream(self, number):
-        """Large tiles, some of them; the rest is cancelled."""
+        """Large tiles, some of them; the rest is cancelled. None is read before one of the streams was
+        refused: however slowly their clients come, they are too many at a time."""
         request = tiles_request(seed=number, level=14, window=(0, 0, 1 << 15, 1 << 15), tile_size=1000)
         with self.server.channel() as channel:
-            stream = self.server.terrain(channel).StreamTiles(request, timeout=15)
+            stream = self.server.terrain(channel).StreamTiles(request)
+            stream.add_done_callback(lambda _: self.a_stream_is_over.set())
+            self.a_stream_is_over.wait(PATIENCE_SECONDS)
             for _ in range(6):
                 next(stream)
             stream.cancel()
@@ -62,6 +65,7 @@ class Flooded(TimedTest):
 
     def assert_survives_a_flood(self, before_the_end=lambda: None):
         done, refused = [], []
+        self.a_stream_is_over = threading.Event()
 
         def ask(action, number):
             try:
@@ -84,8 +88,7 @@ class Flooded(TimedTest):
             self.assertTrue(wait_until(lambda: self.takes_streams(channel)), "memory stays tight")
             self.assertEqual(*self.server.golden_hash(channel))
         before_the_end()
-        self.server.terminate()
-        self.assertEqual(self.server.process.wait(10), 0)
+        self.assertEqual(self.server.end(), 0)
 
 
 class LittleMemory(Flooded):

@@ -19,11 +19,10 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 
-from real_server import RealServer, fnv1a, golden_tile, main, wait_until  # noqa: E402
+from real_server import SKIPPED, RealServer, fnv1a, golden_tile, main, wait_until  # noqa: E402
 from google.protobuf import json_format  # noqa: E402
 
 STREAM_TILES = "/terrane.v1.TerrainService/StreamTiles"
-SKIPPED = 77
 INVALID_ARGUMENT = 3
 
 
@@ -44,7 +43,7 @@ class OtherClients(unittest.TestCase):
         self.json = json_format.MessageToDict(self.request)
 
     def run_client(self, *command, **options):
-        return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=60, **options)
+        return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300, **options)
 
     def test_node(self):
         packages = npm_packages(ROOT / "tests" / "integration" / "node" / "package.json")

@@ -95,7 +95,7 @@ class PythonClientTest(unittest.TestCase):
     def tearDownClass(cls):
         cls.channel.close()
         cls.server.send_signal(signal.SIGTERM)
-        assert cls.server.wait(30) == 0
+        assert cls.server.wait(60) == 0
         cls.server.stdout.close()
 
     def request(self, **fields):
@@ -215,7 +215,7 @@ class PythonClientTest(unittest.TestCase):
         # server must not grow any more: 400 MB more of tiles may cost it less than
         # a tenth (a release server stays within 1 MB).
         request = self.request(level=16, window=common_pb2.Window(width=65536, height=65536))
-        stream = self.terrain.StreamTiles(request, timeout=240)
+        stream = self.terrain.StreamTiles(request)
         settled = None
         for count, message in enumerate(stream):
             self.assertEqual(message.tile.total if count else 65536, 65536)

@@ -21,11 +21,11 @@ function fnv1a(bytes) {
   return hash.toString(16).padStart(16, '0');
 }
 
-// Every message of a stream and its status, the deadline being ten seconds.
+// Every message of a stream and its status, the deadline being far away.
 function stream(request) {
   return new Promise((resolve) => {
     const messages = [];
-    const call = client.streamTiles(request, { deadline: Date.now() + 10000 });
+    const call = client.streamTiles(request, { deadline: Date.now() + 100000 });
     call.on('data', (message) => messages.push(message));
     call.on('error', () => {}); // comes as status as well
     call.on('status', (status) => resolve({ messages, status }));
