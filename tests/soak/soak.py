@@ -136,8 +136,9 @@ def bench(server, seconds, seed):
     """One run of the load tester: its report."""
     with tempfile.NamedTemporaryFile(suffix=".json") as report:
         subprocess.run([TERRANE, "bench", "--server", server.address, "--concurrency", "6", "--connections", "2", "--mix", MIX,
-                        "--cold", "0.3", "--retry", "5", "--seed", str(seed), "--warm-up", "0s", "--duration", f"{seconds}s",
-                        "--json", report.name, "--progress", "none"], check=True, stdout=subprocess.DEVNULL, timeout=seconds + 120)
+                        "--cold", "0.3", "--retry", "5", "--deadline", "60s", "--seed", str(seed), "--warm-up", "0s",
+                        "--duration", f"{seconds}s", "--json", report.name, "--progress", "none"],
+                       check=True, stdout=subprocess.DEVNULL, timeout=seconds + 120)
         return json.loads(pathlib.Path(report.name).read_text(encoding="utf-8"))
 
 
