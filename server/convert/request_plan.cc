@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -61,21 +62,28 @@ std::optional<Extent> ExtentOf(const core::TerrainSpec* spec, int level,
                 line ? 1 : AxisSamples(domain->cells_y, level, sampling)};
 }
 
-// Checks the samples [first, first + count) of one axis; `extent` is that of a
-// bounded domain.
-bool CheckSamples(const Path& first_path, std::int64_t first,
-                  const Path& count_path, std::int64_t count,
-                  std::optional<std::int64_t> extent, Violations* violations) {
-  if (!CheckInteger(first_path, first, extent ? 0 : -kMaxIndex, kMaxIndex,
-                    violations)) {
-    return false;
-  }
-  const std::int64_t end = extent ? std::min(*extent, kMaxIndex) : kMaxIndex;
-  if (first >= end) {
-    return CheckInteger(first_path, first, extent ? 0 : -kMaxIndex, end - 1,
-                        violations);
-  }
-  return CheckInteger(count_path, count, 1, end - first, violations);
+// An axis of samples, or of whole tiles: [low, end).
+struct Axis {
+  std::int64_t low = 0;
+  std::int64_t end = 0;
+};
+
+Axis SampleAxis(std::optional<std::int64_t> extent) {
+  if (extent.has_value()) return {0, std::min(*extent, kMaxIndex)};
+  return {-kMaxIndex, kMaxIndex};
+}
+
+// Checks [first, first + count) on an axis.
+bool CheckOnAxis(const Axis& axis, const Path& first_path, std::int64_t first,
+                 const Path& count_path, std::int64_t count,
+                 Violations* violations) {
+  const bool first_good =
+      CheckInteger(first_path, first, axis.low, axis.end - 1, violations);
+  // A first that is wrong hides nothing of the count that would be wrong
+  // whatever it was.
+  const std::int64_t begin = first_good ? first : axis.low;
+  return CheckInteger(count_path, count, 1, axis.end - begin, violations) &&
+         first_good;
 }
 
 // One StreamTiles request being checked.
@@ -94,24 +102,24 @@ class TilePlanner {
 
  private:
   void PlanSamples();
-  void PlanExtent();
-  void PlanWindow(const v1::Window& window);
-  void PlanTileRange(const v1::TileRange& tiles);
-  void PlanWholeDomain();
-  // Stride and window of one axis of a tile range.
-  bool PlanTileAxis(const Path& first_path, std::int64_t first,
-                    const Path& count_path, std::int64_t count,
-                    std::optional<std::int64_t> extent,
-                    std::int64_t* sample_first, std::int64_t* sample_count);
+  // These are true when the number of tiles is known.
+  bool PlanExtent();
+  bool PlanWindow(const v1::Window& window);
+  bool PlanTileRange(const v1::TileRange& tiles);
+  bool PlanWholeDomain();
+  bool CheckTotals(const Path& path) const;
   void CutWindow();
-  void CheckTotals(const Path& path);
+  // Of the samples that may be asked for.
+  Axis SamplesX() const;
+  Axis SamplesY() const;
+  // Whole tiles that fit from sample 0 on, and before it in an endless world.
+  Axis TilesOn(const Axis& samples) const;
 
   const v1::StreamTilesRequest& request_;
   const core::TerrainSpec* const spec_;
   const Limits& limits_;
   const Path& root_;
   Violations* const violations_;
-  bool size_good_ = false;
   std::optional<Extent> extent_;
   TilePlan plan_;
 };
@@ -126,11 +134,27 @@ void TilePlanner::PlanSamples() {
       request_.tile_size() == 0 ? kDefaultTileSize : request_.tile_size();
   const bool shares_edges =
       request_.has_tiles() && plan_.sampling == core::Sampling::kPoint;
-  size_good_ =
-      CheckInteger(root_.Field("tile_size"), plan_.tile_size,
-                   shares_edges ? 2 : 1, limits_.max_tile_size, violations_);
+  const int least_size = shares_edges ? 2 : 1;
+  if (!CheckInteger(root_.Field("tile_size"), plan_.tile_size, least_size,
+                    limits_.max_tile_size, violations_)) {
+    // What is wrong with the tiles now is wrong whatever their size.
+    plan_.tile_size = least_size;
+  }
   plan_.stride = plan_.tile_size - (shares_edges ? 1 : 0);
   if (level_good) extent_ = ExtentOf(spec_, plan_.level, plan_.sampling);
+}
+
+Axis TilePlanner::SamplesX() const {
+  return SampleAxis(extent_ ? std::optional(extent_->width) : std::nullopt);
+}
+
+Axis TilePlanner::SamplesY() const {
+  return SampleAxis(extent_ ? std::optional(extent_->height) : std::nullopt);
+}
+
+Axis TilePlanner::TilesOn(const Axis& samples) const {
+  const std::int64_t shared = plan_.tile_size - plan_.stride;
+  return {samples.low / plan_.stride, (samples.end - shared) / plan_.stride};
 }
 
 void TilePlanner::CutWindow() {
@@ -138,82 +162,69 @@ void TilePlanner::CutWindow() {
   plan_.rows = (plan_.whole.height + plan_.tile_size - 1) / plan_.tile_size;
 }
 
-void TilePlanner::PlanWindow(const v1::Window& window) {
+bool TilePlanner::PlanWindow(const v1::Window& window) {
   const Path path = root_.Field("window");
   plan_.whole = {window.x(), window.y(), window.width(), window.height()};
-  const auto width = extent_ ? std::optional(extent_->width) : std::nullopt;
-  const auto height = extent_ ? std::optional(extent_->height) : std::nullopt;
   const bool columns_good =
-      CheckSamples(path.Field("x"), window.x(), path.Field("width"),
-                   window.width(), width, violations_);
+      CheckOnAxis(SamplesX(), path.Field("x"), window.x(), path.Field("width"),
+                  window.width(), violations_);
   const bool rows_good =
-      CheckSamples(path.Field("y"), window.y(), path.Field("height"),
-                   window.height(), height, violations_);
-  if (!columns_good || !rows_good || !size_good_) return;
+      CheckOnAxis(SamplesY(), path.Field("y"), window.y(), path.Field("height"),
+                  window.height(), violations_);
+  if (!columns_good || !rows_good) return false;
   CutWindow();
-  CheckTotals(path);
+  return CheckTotals(path);
 }
 
-bool TilePlanner::PlanTileAxis(const Path& first_path, std::int64_t first,
-                               const Path& count_path, std::int64_t count,
-                               std::optional<std::int64_t> extent,
-                               std::int64_t* sample_first,
-                               std::int64_t* sample_count) {
-  // Whole tiles that fit from sample 0 on, and before it in an endless world.
-  const std::int64_t end = extent ? std::min(*extent, kMaxIndex) : kMaxIndex;
+bool TilePlanner::PlanTileRange(const v1::TileRange& tiles) {
+  const Path path = root_.Field("tiles");
   const std::int64_t shared = plan_.tile_size - plan_.stride;
-  const std::int64_t fit = (end - shared) / plan_.stride;
-  if (!CheckInteger(first_path, first, extent ? 0 : -(kMaxIndex / plan_.stride),
-                    std::max<std::int64_t>(fit - 1, 0), violations_) ||
-      !CheckInteger(count_path, count, 1, fit - first, violations_)) {
+  const Axis columns = TilesOn(SamplesX());
+  const Axis rows = TilesOn(SamplesY());
+  if (columns.end == 0 || rows.end == 0) {  // a domain smaller than a tile
+    CheckInteger(root_.Field("tile_size"), plan_.tile_size, 1 + shared,
+                 std::min(SamplesX().end, SamplesY().end), violations_);
     return false;
   }
-  *sample_first = first * plan_.stride;
-  *sample_count = count * plan_.stride + shared;
-  return true;
-}
-
-void TilePlanner::PlanTileRange(const v1::TileRange& tiles) {
-  if (!size_good_) return;
-  const Path path = root_.Field("tiles");
-  const auto width = extent_ ? std::optional(extent_->width) : std::nullopt;
-  const auto height = extent_ ? std::optional(extent_->height) : std::nullopt;
+  const bool columns_good =
+      CheckOnAxis(columns, path.Field("x"), tiles.x(), path.Field("columns"),
+                  tiles.columns(), violations_);
+  const bool rows_good =
+      CheckOnAxis(rows, path.Field("y"), tiles.y(), path.Field("rows"),
+                  tiles.rows(), violations_);
+  if (!columns_good || !rows_good) return false;
   plan_.tile_x = tiles.x();
   plan_.tile_y = tiles.y();
   plan_.columns = tiles.columns();
   plan_.rows = tiles.rows();
-  const bool columns_good =
-      PlanTileAxis(path.Field("x"), tiles.x(), path.Field("columns"),
-                   tiles.columns(), width, &plan_.whole.x, &plan_.whole.width);
-  const bool rows_good =
-      PlanTileAxis(path.Field("y"), tiles.y(), path.Field("rows"), tiles.rows(),
-                   height, &plan_.whole.y, &plan_.whole.height);
-  if (columns_good && rows_good) CheckTotals(path);
+  plan_.whole = {tiles.x() * plan_.stride, tiles.y() * plan_.stride,
+                 tiles.columns() * plan_.stride + shared,
+                 tiles.rows() * plan_.stride + shared};
+  return CheckTotals(path);
 }
 
-void TilePlanner::PlanWholeDomain() {
-  if (spec_ == nullptr) return;  // nothing is known of a bad recipe's domain
+bool TilePlanner::PlanWholeDomain() {
+  if (spec_ == nullptr) return false;  // nothing is known of its domain
   if (!extent_.has_value()) {
     if (!DomainOf(*spec_).has_value()) {
       violations_->Add(root_.Field("window").Text(),
                        "must be set, or tiles, when the terrain is endless");
     }
-    return;
+    return false;
   }
   if (std::max(extent_->width, extent_->height) > kMaxIndex) {
     violations_->Add(root_.Field("level").Text(),
                      "must leave at most 2^52 samples a side of the domain, "
                      "got " +
                          std::to_string(plan_.level));
-    return;
+    return false;
   }
   plan_.whole = {0, 0, extent_->width, extent_->height};
-  if (!size_good_) return;
   CutWindow();
-  CheckTotals(root_.Field("window"));
+  return CheckTotals(root_.Field("window"));
 }
 
-void TilePlanner::PlanExtent() {
+bool TilePlanner::PlanExtent() {
   switch (request_.extent_case()) {
     case v1::StreamTilesRequest::kWindow:
       return PlanWindow(request_.window());
@@ -222,9 +233,10 @@ void TilePlanner::PlanExtent() {
     case v1::StreamTilesRequest::EXTENT_NOT_SET:
       return PlanWholeDomain();
   }
+  return false;
 }
 
-void TilePlanner::CheckTotals(const Path& path) {
+bool TilePlanner::CheckTotals(const Path& path) const {
   // Samples sent: those of shared edges count in every tile that has them.
   const bool ranges = request_.has_tiles();
   std::int64_t columns = ranges ? 0 : plan_.whole.width;
@@ -235,16 +247,13 @@ void TilePlanner::CheckTotals(const Path& path) {
        (__builtin_mul_overflow(plan_.columns, plan_.tile_size, &columns) ||
         __builtin_mul_overflow(plan_.rows, plan_.tile_size, &rows))) ||
       __builtin_mul_overflow(columns, rows, &samples);
-  if (overflow || samples > limits_.max_stream_samples) {
-    violations_->Add(
-        path.Text(),
-        "must have at most " + std::to_string(limits_.max_stream_samples) +
-            " samples, got " +
-            (overflow ? "more than 2^63" : std::to_string(samples)));
-    return;
-  }
-  CheckInteger(root_.Field("first_tile"), plan_.first_tile, 0, plan_.total(),
-               violations_);
+  if (!overflow && samples <= limits_.max_stream_samples) return true;
+  violations_->Add(path.Text(),
+                   "must have at most " +
+                       std::to_string(limits_.max_stream_samples) +
+                       " samples, got " +
+                       (overflow ? "more than 2^63" : std::to_string(samples)));
+  return false;
 }
 
 TilePlan TilePlanner::Plan() {
@@ -254,7 +263,10 @@ TilePlan TilePlanner::Plan() {
   }
   plan_.first_tile = request_.first_tile();
   PlanSamples();
-  PlanExtent();
+  const std::int64_t most_first_tile =
+      PlanExtent() ? plan_.total() : std::numeric_limits<std::int64_t>::max();
+  CheckInteger(root_.Field("first_tile"), plan_.first_tile, 0, most_first_tile,
+               violations_);
   PlanEncoding(request_.encoding(),
                request_.has_range() ? &request_.range() : nullptr, root_,
                violations_, &plan_);
@@ -349,25 +361,23 @@ core::TileRequest PlanProfile(const v1::GetProfileRequest& request,
                            root.Field("sampling"), violations);
   plan.window = {request.first(), 0, request.count(), 1};
   const Path count = root.Field("count");
-  if (!level_good) return plan;
   const std::optional<Extent> extent =
-      ExtentOf(spec, plan.level, plan.sampling);
+      level_good ? ExtentOf(spec, plan.level, plan.sampling) : std::nullopt;
   if (request.count() == 0) {
     if (extent.has_value()) {
       plan.window = {0, 0, extent->width, 1};
-    } else if (spec != nullptr) {
+    } else if (spec == nullptr || DomainOf(*spec).has_value()) {
+      return plan;  // nothing is known of its domain, or of the level
+    } else {
       violations->Add(count.Text(), "must be set when the terrain is endless");
       return plan;
     }
   }
-  if (spec == nullptr && request.count() == 0) return plan;
-  if (!CheckInteger(count, plan.window.width, 1, limits.max_profile_samples,
-                    violations)) {
-    return plan;
-  }
-  CheckSamples(root.Field("first"), plan.window.x, count, plan.window.width,
-               extent ? std::optional(extent->width) : std::nullopt,
-               violations);
+  const bool count_good = CheckInteger(count, plan.window.width, 1,
+                                       limits.max_profile_samples, violations);
+  CheckOnAxis(SampleAxis(extent ? std::optional(extent->width) : std::nullopt),
+              root.Field("first"), plan.window.x, count,
+              count_good ? plan.window.width : 1, violations);
   return plan;
 }
 

@@ -16,6 +16,11 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
+// A violation of this field.
+auto Field(const char* name) {
+  return ::testing::Field("field", &core::Violation::field, name);
+}
+
 constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
 
 class RequestPlanTest : public ::testing::Test {
@@ -102,6 +107,42 @@ TEST_F(RequestPlanTest, EachFieldOutsideItsRangeIsNamed) {
                   "tiles.rows: must be in [1, 2251799813685247], got -5"));
 }
 
+// A user mends a request once: a wrong field hides no other one.
+TEST_F(RequestPlanTest, NoFieldHidesAnother) {
+  EXPECT_THAT(
+      Wrong(R"({"level": 41, "tileSize": -1, "firstTile": -1,
+                "window": {"x": "-9000000000000000", "width": -1,
+                           "y": "9000000000000000", "height": 0}})"),
+      ElementsAre("level: must be in [0, 40], got 41",
+                  "tile_size: must be in [1, 1025], got -1",
+                  "window.x: must be in [-4503599627370496, "
+                  "4503599627370495], got -9000000000000000",
+                  "window.width: must be in [1, 9007199254740992], got -1",
+                  "window.y: must be in [-4503599627370496, "
+                  "4503599627370495], got 9000000000000000",
+                  "window.height: must be in [1, 9007199254740992], got 0",
+                  "first_tile: must be in [0, 9223372036854775807], got -1"));
+  EXPECT_THAT(Wrong(R"({"tileSize": 1, "tiles": {"x": -1, "columns": 0,
+                        "y": 5, "rows": -2}})",
+                    true),
+              ElementsAre("tile_size: must be in [2, 1025], got 1",
+                          "tiles.x: must be in [0, 3], got -1",
+                          "tiles.columns: must be in [1, 4], got 0",
+                          "tiles.y: must be in [0, 1], got 5",
+                          "tiles.rows: must be in [1, 2], got -2"));
+  EXPECT_THAT(
+      Wrong(R"({"tileSize": 4, "tiles": {"columns": 1, "rows": 1}})", true),
+      ElementsAre("tile_size: must be in [2, 3], got 4"));
+  core::TerrainSpec line;
+  line.dimensions = 1;
+  line.domain = core::Domain{3, 0};
+  violations_ = {};
+  PlanProfile(
+      FromJson<v1::GetProfileRequest>(R"({"first": -1, "count": 400001})"),
+      &line, limits_, "", &violations_);
+  EXPECT_THAT(violations_.kept(), ElementsAre(Field("count"), Field("first")));
+}
+
 TEST_F(RequestPlanTest, RangeIsCheckedForSixteenBitsOnly) {
   EXPECT_THAT(Wrong(R"({"window": {"width": 1, "height": 1},
                         "range": {"minimum": 5, "maximum": 5}})"),
@@ -125,7 +166,7 @@ TEST_F(RequestPlanTest, IndicesStayWithinTwoToTheFiftyTwo) {
   EXPECT_THAT(Wrong(R"({"window": {"x": "-4503599627370497", "width": 1,
                         "height": 1}})"),
               ElementsAre("window.x: must be in [-4503599627370496, "
-                          "4503599627370496], got -4503599627370497"));
+                          "4503599627370495], got -4503599627370497"));
   EXPECT_THAT(Wrong(R"({"tileSize": 257, "tiles":
                 {"x": "17592186044415", "columns": 1, "rows": 1}})"),
               ElementsAre("tiles.x: must be in [-17592186044416, "
@@ -173,7 +214,7 @@ TEST_F(RequestPlanTest, WindowsStayInsideABoundedDomain) {
   EXPECT_THAT(
       Wrong(R"({"window": {"x": 5, "y": -1, "width": 1, "height": 3}})", true),
       ElementsAre("window.x: must be in [0, 4], got 5",
-                  "window.y: must be in [0, 4503599627370496], got -1"));
+                  "window.y: must be in [0, 2], got -1"));
   EXPECT_THAT(Wrong(R"({"window": {"x": 1, "width": 5, "height": 1}})", true),
               ElementsAre("window.width: must be in [1, 4], got 5"));
   EXPECT_THAT(
