@@ -11,7 +11,6 @@ import os
 import pathlib
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -32,7 +31,8 @@ import rapid_reset  # noqa: E402
 # 64 MB: more than all buffers on the way hold.
 WORLD = ["terrain", "--seed", "7", "--level", "6", "--window", "0,0,4096,4096"]
 CONFIGURATION = processes.DEPLOY / "haproxy"
-SECONDS_PER_TEST = 20
+# For a machine that stands still at times: an attack, then a call's deadline, each a minute.
+SECONDS_PER_TEST = 240
 # The contract: what an attack on the proxy may cost a replica.
 MOST_MIB = 50
 
@@ -124,7 +124,7 @@ class HaproxyTest(unittest.TestCase):
         with grpc.insecure_channel(self.proxy.address) as channel:
             info = info_pb2_grpc.InfoServiceStub(channel)
             for _ in range(20):
-                info.GetServerInfo(info_pb2.GetServerInfoRequest(), timeout=20)
+                info.GetServerInfo(info_pb2.GetServerInfoRequest(), timeout=60)
         served = [self.proxy.number("haproxy_server_sessions_total", replica) for replica in (0, 1)]
         self.assertEqual(sum(served), 20)
         self.assertGreater(min(served), 5)
@@ -151,7 +151,7 @@ class HaproxyTest(unittest.TestCase):
         self.assertGreater(failures.calls[1], 20)
         self.assertEqual(code, 0, said)
         self.assertEqual(digest, self.local_hash())
-        self.assertEqual(self.replicas[replica].process.wait(40), 0)
+        self.assertEqual(self.replicas[replica].process.wait(100), 0)
 
     def test_a_client_that_goes_away_is_gone_for_the_replica(self):
         client, replica = self.paused_client()
@@ -171,19 +171,20 @@ class HaproxyTest(unittest.TestCase):
         self.assertEqual(done.stdout, "415")
 
     def test_rapid_reset_stays_at_the_proxy(self):
+        seconds, resets, attackers = 5, 20_000, 4
         # Each asks for 16 GiB of heights.
         request = terrain_pb2.StreamTilesRequest(level=16, window=common_pb2.Window(width=65536, height=65536))
         request.terrain.recipe.seed = 5
         before = most = [replica.resident_mib() for replica in self.replicas]
-        with concurrent.futures.ProcessPoolExecutor(4) as attackers, load(self.proxy.address, deadline=5) as polite:
-            attacks = [attackers.submit(rapid_reset.attack, self.proxy.port, "/terrane.v1.TerrainService/StreamTiles",
-                                        request.SerializeToString(), 5) for _ in range(4)]
+        with concurrent.futures.ProcessPoolExecutor(attackers) as pool, load(self.proxy.address) as polite:
+            attacks = [pool.submit(rapid_reset.attack, self.proxy.port, "/terrane.v1.TerrainService/StreamTiles",
+                                   request.SerializeToString(), seconds, resets // attackers) for _ in range(attackers)]
             while not all(attack.done() for attack in attacks):
                 most = [max(m, r.resident_mib()) for m, r in zip(most, self.replicas)]
                 time.sleep(0.05)
-        resets = sum(attack.result() for attack in attacks)
-        print(f"{resets} streams reset; MiB before {before}, at most {most}; {polite.calls[1]} polite calls")
-        self.assertGreater(resets, 20_000)
+        sent = sum(attack.result() for attack in attacks)
+        print(f"{sent} streams reset; MiB before {before}, at most {most}; {polite.calls[1]} polite calls")
+        self.assertGreaterEqual(sent, resets)
         for at_first, at_most in zip(before, most):
             self.assertLess(at_most, at_first + MOST_MIB)
         # Who comes from elsewhere was served all the while.
@@ -198,8 +199,7 @@ class HaproxyTest(unittest.TestCase):
         sent = 0
         with load(self.proxy.address) as polite:
             for _ in range(8):
-                with socket.create_connection(("127.0.0.1", self.proxy.port), timeout=1,
-                                              source_address=(rapid_reset.ATTACKER, 0)) as attacker:
+                with rapid_reset.connect(self.proxy.port) as attacker:
                     try:
                         # Headers that never end.
                         attacker.sendall(rapid_reset.PREFACE + rapid_reset.frame(rapid_reset.SETTINGS, 0, 0)
@@ -242,13 +242,13 @@ class Load:
     def finish(self):
         """Failures and the number of calls."""
         self.stopped.set()
-        results = [each.result(60) for each in self.running]
+        results = [each.result(self.deadline + 60) for each in self.running]
         self.pool.shutdown()
         self.calls = sum((r[0] for r in results), []), sum(r[1] for r in results)
 
 
 @contextlib.contextmanager
-def load(address, deadline=15):
+def load(address, deadline=60):
     """Load while the block runs; what it saw is in `calls` afterwards."""
     running = Load(address, deadline)
     try:

@@ -3,8 +3,10 @@
 Everything listens on the loopback address and is ended by its own process id.
 """
 
+import itertools
 import os
 import pathlib
+import random
 import signal
 import socket
 import subprocess
@@ -16,21 +18,28 @@ import urllib.request
 DEPLOY = pathlib.Path(__file__).resolve().parents[2] / "deploy"
 
 
+def free(port):
+    """Whether nobody has that port of the loopback address."""
+    with socket.socket() as it:
+        try:
+            it.bind(("127.0.0.1", port))
+        except OSError:
+            return False
+    return True
+
+
 def free_ports(count):
-    """Ports of the loopback address that nobody listens on, all different."""
-    sockets = [socket.socket() for _ in range(count)]
-    for each in sockets:
-        each.bind(("127.0.0.1", 0))
-    ports = [each.getsockname()[1] for each in sockets]
-    for each in sockets:
-        each.close()
-    return ports
+    """Ports of the loopback address that nobody listens on, all different.
+
+    Below those that Linux hands out (32768 and up), so that none is somebody else's by the time it is used.
+    """
+    return list(itertools.islice(filter(free, random.sample(range(10000, 30000), 1000)), count))
 
 
 def get(url):
     """Status and text of a plain HTTP GET; (0, "") when nobody answers."""
     try:
-        with urllib.request.urlopen(url, timeout=5) as answer:
+        with urllib.request.urlopen(url, timeout=30) as answer:
             return answer.status, answer.read().decode()
     except urllib.error.HTTPError as error:
         return error.code, error.read().decode()
@@ -38,7 +47,7 @@ def get(url):
         return 0, ""
 
 
-def wait_until(condition, what, seconds=15):
+def wait_until(condition, what, seconds=60):
     """Waits for a condition; an AssertionError that says what did not come."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
@@ -83,12 +92,12 @@ class Replica:
     def kill(self):
         """kill -9."""
         self.process.kill()
-        self.process.wait(10)
+        self.process.wait(60)
 
     def stop(self):
         """SIGTERM; the exit code. Nothing happens to one that has ended."""
         self.process.send_signal(signal.SIGTERM)
-        return self.process.wait(40)
+        return self.process.wait(100)
 
 
 class Proxy:
@@ -133,6 +142,6 @@ class Proxy:
 
     def stop(self):
         self.process.terminate()
-        self.process.wait(10)
+        self.process.wait(60)
         self.log.close()
         self.folder.cleanup()

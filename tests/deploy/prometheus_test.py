@@ -99,6 +99,7 @@ class ScrapeTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.replica = processes.Replica(SERVER, "--memory-limit-mib", "4096")
+        cls.addClassCleanup(cls.stop)
         cls.address = f"127.0.0.1:{cls.replica.port}"
         with tempfile.TemporaryDirectory() as folder:
             cls.ask("terrain", "--seed", "1", "--window", "0,0,300,200", "--out", f"{folder}/a.f32")
@@ -106,7 +107,7 @@ class ScrapeTest(unittest.TestCase):
         processes.wait_until(cls.both_are_counted, "two calls in the metrics")
 
     @classmethod
-    def tearDownClass(cls):
+    def stop(cls):
         assert cls.replica.stop() == 0
 
     @classmethod
@@ -114,7 +115,7 @@ class ScrapeTest(unittest.TestCase):
         """Whether a scrape, which is kept, has both calls: a call is counted after its answer."""
         _, cls.scrape = processes.get(cls.replica.url("/metrics"))
         return all(re.search(rf'^terrane_rpc_total\{{.*code="OK".*method="{method}".*\}} [1-9]', cls.scrape, re.MULTILINE)
-                   for method in ("StreamTiles", "StreamTree"))
+                   for method in ("StreamTiles", "StreamTreeMesh"))
 
     @classmethod
     def ask(cls, *arguments):

