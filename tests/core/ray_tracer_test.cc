@@ -3,10 +3,12 @@
 #include "core/raytrace/ray_tracer.h"
 
 #include <algorithm>
-#include <chrono>
+#include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
+#include <memory>
+#include <stop_token>
+#include <utility>
 
 #include "tests/core/traced_shapes.h"
 
@@ -201,24 +203,48 @@ TEST(RayTracer, SeedsDifferAndPassesConverge) {
   EXPECT_LT(many, 0.02);
 }
 
-TEST(RayTracer, StopsWithinMilliseconds) {
+// Casts another's rays, counts them, and asks for a stop in the midst of them.
+class StoppingCaster final : public RayCaster {
+ public:
+  StoppingCaster(std::shared_ptr<const RayCaster> caster, std::int64_t stop_at)
+      : caster_(std::move(caster)), stop_at_(stop_at) {}
+
+  bool Intersect(const Ray& ray, SurfacePoint* point) const override {
+    Count();
+    return caster_->Intersect(ray, point);
+  }
+  bool Occluded(const Ray& ray) const override {
+    Count();
+    return caster_->Occluded(ray);
+  }
+
+  std::stop_token token() const { return stop_.get_token(); }
+  std::int64_t rays() const { return rays_; }
+
+ private:
+  void Count() const {
+    if (++rays_ == stop_at_) stop_.request_stop();
+  }
+
+  const std::shared_ptr<const RayCaster> caster_;
+  const std::int64_t stop_at_;
+  mutable std::stop_source stop_;
+  mutable std::atomic<std::int64_t> rays_ = 0;
+};
+
+// Counted in rays after the stop: a thousand of them take about a millisecond.
+TEST(RayTracer, StopsWithinHundredsOfRays) {
   const Mesh ball = Ball(1, 64);
   const auto traced = Traced(SceneOf(ball, White()));
-  const auto tracer =
-      *RayTracer::Create(traced, traced->materials(), BallPicture(2000, 2000));
-  std::stop_source stop;
-  std::chrono::steady_clock::time_point asked;
-  std::jthread stopper([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    asked = std::chrono::steady_clock::now();
-    stop.request_stop();
-  });
-  const auto image = RenderImage(*tracer, {1000, 1}, stop.get_token(), nullptr);
-  const auto now = std::chrono::steady_clock::now();
-  stopper.join();
-  EXPECT_TRUE(absl::IsCancelled(image.status())) << image.status();
-  // Many more than one, for a machine that is busy.
-  EXPECT_LT(now - asked, std::chrono::milliseconds(100));
+  for (const std::int64_t stop_at : {1, 1000, 100'000}) {
+    const auto caster = std::make_shared<StoppingCaster>(traced, stop_at);
+    const auto tracer = *RayTracer::Create(caster, traced->materials(),
+                                           BallPicture(2000, 2000));
+    const auto image = RenderImage(*tracer, {1000, 1}, caster->token(), {});
+    EXPECT_TRUE(absl::IsCancelled(image.status())) << image.status();
+    EXPECT_GE(caster->rays(), stop_at);
+    EXPECT_LT(caster->rays(), stop_at + 200);
+  }
 }
 
 TEST(RayTracer, TellsOfEveryPass) {
