@@ -1,5 +1,6 @@
 #include "client/chosen_tree.h"
 
+#include <fmt/format.h>
 #include <google/protobuf/field_mask.pb.h>
 #include <google/protobuf/util/field_mask_util.h>
 #include <google/protobuf/util/json_util.h>
@@ -56,7 +57,7 @@ absl::Status Apply(const std::string& setting, v1::TreeRecipe* recipe) {
     const std::size_t dot =
         end == 0 ? std::string::npos : path.rfind('.', end - 1);
     const std::size_t start = dot == std::string::npos ? 0 : dot + 1;
-    json = "{\"" + path.substr(start, end - start) + "\":" + json + "}";
+    json = fmt::format("{{\"{}\":{}}}", path.substr(start, end - start), json);
     end = dot;
   }
   v1::TreeRecipe parsed;

@@ -15,12 +15,14 @@ enum class ProgressMode { kAuto, kNone, kJson };
 
 // What both kinds share: the form, and how often it is shown.
 class ProgressLine {
+ public:
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
  protected:
   explicit ProgressLine(ProgressMode mode);
   // Removes the bar.
   ~ProgressLine();
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
 
   enum class Form { kNothing, kBar, kJson };
 

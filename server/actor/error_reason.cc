@@ -18,7 +18,8 @@ absl::Status WithReason(absl::Status status, const ErrorReason& reason) {
   return status;
 }
 
-absl::Status NotFoundError(std::string message, ErrorReason reason) {
+absl::Status NotFoundError(const std::string& message,
+                           const ErrorReason& reason) {
   return WithReason(absl::NotFoundError(message), reason);
 }
 

@@ -24,7 +24,8 @@ inline constexpr std::string_view kPresetNotFound = "PRESET_NOT_FOUND";
 // The status, with a reason.
 absl::Status WithReason(absl::Status status, const ErrorReason& reason);
 // NOT_FOUND with a reason.
-absl::Status NotFoundError(std::string message, ErrorReason reason);
+absl::Status NotFoundError(const std::string& message,
+                           const ErrorReason& reason);
 
 // The reason a status carries.
 std::optional<ErrorReason> ReasonOf(const absl::Status& status);
