@@ -34,8 +34,10 @@ void WorkerPool::SetBacklog(const Work& work) {
 }
 
 void WorkerPool::Leave(std::uint64_t call) {
+  Task dropped;  // what it held goes without the lock
   std::lock_guard lock(mutex_);
   backlog_.Remove(call);
+  dropped = queue_.Drop(call);
 }
 
 Expectation WorkerPool::Expect(const Work& work) const {

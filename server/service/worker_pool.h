@@ -46,7 +46,7 @@ class WorkerPool {
   void Submit(Work work, Task task);
   // Counts what a call has left to do before it has a task, or anew.
   void SetBacklog(const Work& work);
-  // The call has no more tasks.
+  // The call is over: a task of it that waits is dropped.
   void Leave(std::uint64_t call);
   Expectation Expect(const Work& work) const;
   Load load() const;

@@ -121,6 +121,55 @@ TEST(FairQueueTest, InteractiveComesBeforeBatchWhichStillMoves) {
   EXPECT_NEAR(Count(Serve(&queue, 100))["batch"], 10, 1);
 }
 
+// Clients that come once and never again, as many as are served: names that
+// change, or a crowd.
+TEST(FairQueueTest, NewClientsDoNotStarveOneThatWaits) {
+  FairQueue queue;
+  Push(&queue, Of("old", 1), 100);
+  Serve(&queue, 10);
+  std::vector<std::string> served;
+  for (int k = 0; k < 300; ++k) {
+    Push(&queue, Of("new" + std::to_string(2 * k), 1));
+    Push(&queue, Of("new" + std::to_string(2 * k + 1), 1));
+    served.push_back(Serve(&queue, 1).front());
+  }
+  // Its share among hundreds who wait, and not nothing.
+  EXPECT_GE(Count(served)["old"], 3);
+}
+
+TEST(FairQueueTest, OfClientsThatAreGoneHardlyAnyIsKept) {
+  FairQueue queue;
+  for (int k = 0; k < 10'000; ++k) {
+    // Always somebody there.
+    Push(&queue, Of(std::to_string(k), 1));
+    if (k > 0) Serve(&queue, 1);
+    ASSERT_LE(queue.clients(), 10U);
+  }
+}
+
+TEST(FairQueueTest, ADroppedTaskCostsNobodyAnything) {
+  FairQueue queue;
+  int ran = 0;
+  const auto push = [&](std::uint64_t call) {
+    Work work = Of("a", 1, WorkClass::kBatch, call);
+    work.call = call;
+    queue.Push(work, [&ran](core::TileScratch*) { ++ran; });
+  };
+  push(1);
+  push(2);
+  EXPECT_NE(queue.Drop(1), nullptr);
+  EXPECT_EQ(queue.Drop(1), nullptr) << "once";
+  EXPECT_EQ(queue.Drop(7), nullptr) << "never there";
+  EXPECT_EQ(queue.waiting(), 1U);
+  const FairQueue::Taken taken = queue.Pop();
+  EXPECT_EQ(taken.work.call, 2U);
+  EXPECT_EQ(queue.Drop(2), nullptr) << "it is at work";
+  queue.Finish(taken.work, 1);
+  EXPECT_TRUE(queue.empty());
+  EXPECT_EQ(queue.clients(), 0U);
+  EXPECT_EQ(ran, 0);
+}
+
 TEST(FairQueueTest, OpeningComesBeforeBoth) {
   FairQueue queue;
   Push(&queue, Of("a", 1), 100);
