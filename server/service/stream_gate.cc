@@ -12,7 +12,8 @@ std::optional<StreamGate::Ticket> StreamGate::Enter(Entrant entrant) {
     std::lock_guard lock(mutex_);
     ticket = ++last_ticket_;
     const auto client = clients_.try_emplace(entrant.client).first;
-    if (active_.size() < max_active_) {
+    if (active_.size() < max_active_ &&
+        client->second.active < max_active_of_client_) {
       ++client->second.active;
       active_.emplace(ticket, client);
       start = std::move(entrant.start);
@@ -77,7 +78,10 @@ StreamGate::Clients::iterator StreamGate::Loser(Clients::iterator newcomer) {
 StreamGate::Clients::iterator StreamGate::Next() {
   auto next = clients_.end();
   for (auto one = clients_.begin(); one != clients_.end(); ++one) {
-    if (one->second.waiting.empty()) continue;
+    if (one->second.waiting.empty() ||
+        one->second.active >= max_active_of_client_) {
+      continue;
+    }
     const auto place = [](Clients::iterator client) {
       return std::pair(client->second.active,
                        client->second.waiting.begin()->first);

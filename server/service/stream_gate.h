@@ -1,11 +1,13 @@
 // StreamGate: how many streams are open at the same time.
 //
-// Up to `active` streams are open; up to `waiting` more stand in line. As one
-// ends, a stream of the client with the fewest open ones starts, of these the
-// one that came first. When the line is full, the client with the most streams
-// in it loses its last one: a client that asks for a thousand streams waits for
-// itself and not before the others. What either costs grows with the clients
-// and not with the streams: a storm of refusals must stay cheap.
+// Up to `active` streams are open, three quarters at most of one client: readers
+// that take their time hold their places, and others must find one. Up to
+// `waiting` more stand in line. As one ends, a stream of the client with the
+// fewest open ones starts, of these the one that came first. When the line is
+// full, the client with the most streams in it loses its last one: a client
+// that asks for a thousand streams waits for itself and not before the others.
+// What either costs grows with the clients and not with the streams: a storm of
+// refusals must stay cheap.
 //
 // Threads: any. `start` and `refuse` run on a thread that enters or leaves, and
 // only hand work over.
@@ -36,7 +38,9 @@ class StreamGate {
   };
 
   StreamGate(std::size_t active, std::size_t waiting)
-      : max_active_(active), max_waiting_(waiting) {}
+      : max_active_(active),
+        max_active_of_client_((3 * active + 3) / 4),
+        max_waiting_(waiting) {}
 
   // Calls `start` now or later. Nothing when the line is full and the stream
   // may not take another's place in it.
@@ -54,7 +58,7 @@ class StreamGate {
   // Whose last stream must go so that one more of `newcomer` can wait, or the
   // end when that is the newcomer's.
   Clients::iterator Loser(Clients::iterator newcomer);
-  // Whose first stream in line goes next; the end when the line is empty.
+  // Whose first stream in line goes next; the end when nobody's may.
   Clients::iterator Next();
   // Takes a stream out of the line.
   Entrant TakeWaiting(Clients::iterator client, Ticket ticket);
@@ -62,6 +66,7 @@ class StreamGate {
   void Forget(Clients::iterator client);
 
   const std::size_t max_active_;
+  const std::size_t max_active_of_client_;
   const std::size_t max_waiting_;
   std::mutex mutex_;
   Ticket last_ticket_ = 0;

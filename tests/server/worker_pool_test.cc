@@ -10,11 +10,12 @@
 #include <latch>
 #include <set>
 
+#include "server/actor/cpu_quota.h"
 #include "server/service/admission.h"
 #include "server/service/buffer_pool.h"
-#include "server/service/cpu_quota.h"
 #include "server/service/status.h"
 #include "server/service/stream_gate.h"
+#include "tests/client/temporary_folder.h"
 
 namespace terrane::server {
 namespace {
@@ -115,6 +116,20 @@ TEST_F(GateTest, WhoHasFewestOpenComesNext) {
   EXPECT_THAT(started_, ElementsAre(1, 2, 4));
 }
 
+TEST_F(GateTest, NobodyTakesEveryPlace) {
+  StreamGate gate(4, 8);
+  const auto enter = [&](const std::string& client, int i) {
+    return gate.Enter({client, [this, i] { started_.push_back(i); }, [] {}});
+  };
+  const auto first = enter("greedy", 1);
+  for (const int i : {2, 3, 4, 5}) enter("greedy", i);
+  EXPECT_THAT(started_, ElementsAre(1, 2, 3));
+  enter("polite", 6);
+  EXPECT_THAT(started_, ElementsAre(1, 2, 3, 6));
+  gate.Leave(*first);
+  EXPECT_THAT(started_, ElementsAre(1, 2, 3, 6, 4));
+}
+
 TEST_F(GateTest, WhoHasMostInAFullLineLosesTheLastOne) {
   Enter("greedy", 1);
   Enter("greedy", 2);
@@ -128,6 +143,30 @@ TEST_F(GateTest, WhoHasMostInAFullLineLosesTheLastOne) {
   // All alike: the newcomer goes.
   EXPECT_FALSE(Enter("another", 7).has_value());
   EXPECT_THAT(started_, ElementsAre(1));
+}
+
+TEST(WorkerPoolTest, ACallThatIsOverLeavesTheQueue) {
+  WorkerPool pool(1);
+  std::latch at_work(1);
+  std::latch go(1);
+  pool.Submit({.client = "a", .call = 1}, [&](core::TileScratch*) {
+    at_work.count_down();
+    go.wait();
+  });
+  at_work.wait();
+  std::atomic<bool> ran = false;
+  const auto held = std::make_shared<int>();
+  pool.Submit({.client = "a", .seconds = 5, .call = 2},
+              [&ran, held](core::TileScratch*) { ran = true; });
+  pool.Leave(2);
+  EXPECT_EQ(held.use_count(), 1) << "the task is still there";
+  EXPECT_EQ(pool.load().interactive_seconds, 0);
+  std::latch last(1);
+  pool.Submit({.client = "a", .call = 3},
+              [&last](core::TileScratch*) { last.count_down(); });
+  go.count_down();
+  last.wait();
+  EXPECT_FALSE(ran);
 }
 
 TEST(AdmissionTest, IsByTheExpectedFinish) {
@@ -219,14 +258,13 @@ TEST(AdmissionTest, AnIdleServerTriesWhatLooksALittleTooDear) {
 class CpuQuotaTest : public ::testing::Test {
  protected:
   CpuQuotaTest() { std::filesystem::create_directories(root_ / "a" / "b"); }
-  ~CpuQuotaTest() override { std::filesystem::remove_all(root_); }
 
   void Write(const std::string& group, const std::string& quota) {
     std::ofstream(root_ / group / "cpu.max") << quota << "\n";
   }
 
-  const std::filesystem::path root_ =
-      std::filesystem::path(::testing::TempDir()) / "terrane_cgroup";
+  const client::TemporaryFolder folder_;
+  const std::filesystem::path root_ = folder_.File("cgroup");
 };
 
 TEST_F(CpuQuotaTest, TightestQuotaOnTheWayUpCounts) {
