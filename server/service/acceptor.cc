@@ -225,6 +225,9 @@ void Acceptor::Run() {
       if (!watched_.contains(fd)) {
         ready.push_back(fd);
       } else if ((event.events & EPOLLHUP) != 0) {
+        // gRPC's own descriptor may keep the socket open, and with it what
+        // epoll knows of this one, whose number another may have next.
+        epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, fd, nullptr);
         watched_.erase(fd);
         --connections_;
       }
