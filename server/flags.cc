@@ -6,14 +6,29 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 
-#include "server/service/cpu_quota.h"
+#include "server/actor/cpu_quota.h"
 #include "server/service/memory_watch.h"
 
 namespace terrane::server {
 namespace {
 
 constexpr int kExitUsage = 2;
+
+// As CLI::Range, which takes NaN for a number in it.
+CLI::Validator Between(double low, double high) {
+  std::ostringstream range;
+  range << "FLOAT in [" << low << " - " << high << "]";
+  return CLI::Validator(
+      [low, high, text = range.str()](const std::string& value) {
+        double number = 0;
+        const bool good = CLI::detail::lexical_cast(value, number) &&
+                          number >= low && number <= high;
+        return good ? std::string() : "Value " + value + " not in " + text;
+      },
+      range.str());
+}
 
 // Only what cannot be another machine's: a name other than localhost might
 // resolve to anything.
@@ -74,7 +89,7 @@ void AddNetworkFlags(CLI::App* app, Flags* flags) {
                   "After SIGTERM or SIGINT calls are still taken for this long "
                   "while probes say that it ends: longer than a balancer needs "
                   "to notice")
-      ->check(CLI::Range(0.0, 600.0))
+      ->check(Between(0, 600))
       ->capture_default_str();
   app->add_option("--drain-seconds", flags->drain_seconds,
                   "Time for running calls to end after that")
@@ -99,10 +114,12 @@ void AddSecurityFlags(CLI::App* app, Flags* flags) {
   app->add_flag("--insecure", flags->insecure,
                 "Allow an address that other machines reach, without TLS");
   TokenOptions& tokens = flags->server.access.tokens;
-  CLI::Option* jwt_key = app->add_option(
-      "--jwt-key", tokens.key_file,
-      "Demand bearer tokens (JWT) that this public key (PEM) verifies: RS256 "
-      "or ES256");
+  CLI::Option* jwt_key =
+      app->add_option("--jwt-key", tokens.key_files,
+                      "Demand bearer tokens (JWT) that this public key (PEM) "
+                      "verifies: RS256 or ES256; more than once while an "
+                      "issuer changes its key")
+          ->allow_extra_args(false);
   app->add_option("--jwt-issuer", tokens.issuer,
                   "Take only tokens of this issuer (iss)")
       ->needs(jwt_key);
@@ -118,12 +135,12 @@ void AddSecurityFlags(CLI::App* app, Flags* flags) {
   app->add_option("--client-rate", access.client_rate,
                   "Calls a second of one client in the long run; what comes in "
                   "ten seconds may come at once; 0: any number")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(Between(0, 1e6))
       ->capture_default_str();
   app->add_option("--client-workers", access.client_workers,
                   "Workers that one client may keep busy in the long run, such "
                   "as 0.5; 0: all")
-      ->check(CLI::Range(0.0, 1e3))
+      ->check(Between(0, 1e3))
       ->capture_default_str();
   app->add_flag("--trust-forwarded-for", access.trust_forwarded_for,
                 "Without tokens, a client is the last address of "
@@ -210,6 +227,25 @@ void AddLogFlags(CLI::App* app, Flags* flags) {
       ->capture_default_str();
 }
 
+// The tighter one of what the flag and the control group say.
+std::optional<std::int64_t> MemoryLimit(const Flags& flags) {
+  const std::optional<std::int64_t> group_limit = ControlGroupMemoryLimit();
+  if (flags.memory_limit_mib == 0) return group_limit;
+  const std::int64_t limit = flags.memory_limit_mib << 20;
+  return std::min(limit, group_limit.value_or(limit));
+}
+
+// What stores keep stays: together they must fit into the memory limit.
+std::optional<std::string> StoresConflict(const Flags& flags) {
+  const std::optional<std::int64_t> limit = MemoryLimit(flags);
+  const std::int64_t mib =
+      flags.raster_store_mib.value_or(0) + flags.prepared_mib.value_or(0);
+  if (!limit.has_value() || mib << 20 <= *limit) return std::nullopt;
+  return "--raster-store-mib and --prepared-mib must be at most " +
+         std::to_string(*limit >> 20) +
+         " together, the memory limit in MiB, got " + std::to_string(mib);
+}
+
 // Says what is wrong with flags that are right one by one.
 std::optional<std::string> Conflict(const Flags& flags) {
   const std::string& listen = flags.server.listen;
@@ -225,15 +261,7 @@ std::optional<std::string> Conflict(const Flags& flags) {
            " is reachable from other machines; use 127.0.0.1, or --tls-cert "
            "and --tls-key, or add --insecure to serve it without TLS";
   }
-  return std::nullopt;
-}
-
-// The tighter one of what the flag and the control group say.
-std::optional<std::int64_t> MemoryLimit(const Flags& flags) {
-  const std::optional<std::int64_t> group_limit = ControlGroupMemoryLimit();
-  if (flags.memory_limit_mib == 0) return group_limit;
-  const std::int64_t limit = flags.memory_limit_mib << 20;
-  return std::min(limit, group_limit.value_or(limit));
+  return StoresConflict(flags);
 }
 
 // A store must fit into the memory limit beside the other one and the work.
@@ -252,6 +280,8 @@ void Resolve(Flags* flags) {
       flags->raster_store_mib, limits.raster_store_bytes, memory_limit);
   limits.prepared_bytes =
       StoreBytes(flags->prepared_mib, limits.prepared_bytes, memory_limit);
+  limits.render_bytes =
+      StoreBytes(std::nullopt, limits.render_bytes, memory_limit);
   limits.recipe.max_inline_spots =
       std::min(limits.recipe.max_inline_spots, limits.recipe.max_spots);
   limits.max_raster_samples =

@@ -1,6 +1,5 @@
 #include "server/service/access.h"
 
-#include <arpa/inet.h>
 #include <strings.h>
 
 #include <chrono>
@@ -9,16 +8,18 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "server/actor/error_reason.h"
+#include "server/service/client_host.h"
 #include "server/service/status.h"
 
 namespace terrane::server {
 namespace {
 
-constexpr char kRead[] = "terrane.read";
-constexpr char kGenerate[] = "terrane.generate";
-constexpr char kUpload[] = "terrane.upload";
+constexpr std::string_view kRead = "terrane.read";
+constexpr std::string_view kGenerate = kGenerateScope;
+constexpr std::string_view kUpload = "terrane.upload";
 
 using Clock = std::chrono::steady_clock;
 using Seconds = ClientAccounts::Seconds;
@@ -27,8 +28,8 @@ using Seconds = ClientAccounts::Seconds;
 // will have ended.
 constexpr Seconds kPlaceDelay{1};
 
-const std::map<std::string_view, const char*>& Scopes() {
-  static const std::map<std::string_view, const char*> scopes = {
+const std::map<std::string_view, std::string_view>& Scopes() {
+  static const std::map<std::string_view, std::string_view> scopes = {
       {"EstimateFlower", kRead},     {"EstimateRender", kRead},
       {"EstimateSurface", kRead},    {"EstimateTiles", kRead},
       {"EstimateTree", kRead},       {"GetFlowerPreset", kRead},
@@ -68,10 +69,15 @@ std::optional<std::string_view> BearerToken(
   return value->substr(kScheme.size());
 }
 
-// "ipv4:10.0.0.7:4711" -> "ipv4:10.0.0.7"
-std::string PeerHost(const grpc::CallbackServerContext& context) {
-  const std::string peer = context.peer();
-  return peer.substr(0, peer.rfind(':'));
+// Whom the certificate of the peer names first, by alternative name or else by
+// common name; nothing without a certificate that was checked.
+std::optional<std::string> CertifiedName(
+    const grpc::CallbackServerContext& context) {
+  const auto peer = context.auth_context();
+  if (peer == nullptr || !peer->IsPeerAuthenticated()) return std::nullopt;
+  const std::vector<grpc::string_ref> names = peer->GetPeerIdentity();
+  if (names.empty()) return std::nullopt;
+  return "cert:" + std::string(names[0].data(), names[0].size());
 }
 
 // The entry that the proxy itself wrote; nothing when it is no address.
@@ -80,12 +86,8 @@ std::optional<std::string> ForwardedHost(
   const auto entries = LastValue(context, "x-forwarded-for");
   if (!entries.has_value()) return std::nullopt;
   const std::size_t start = entries->find_last_of(", ");
-  const std::string host(start == entries->npos ? *entries
-                                                : entries->substr(start + 1));
-  in6_addr address{};
-  if (inet_pton(AF_INET, host.c_str(), &address) == 1) return "ipv4:" + host;
-  if (inet_pton(AF_INET6, host.c_str(), &address) == 1) return "ipv6:" + host;
-  return std::nullopt;
+  return ClientOfAddress(std::string(
+      start == entries->npos ? *entries : entries->substr(start + 1)));
 }
 
 absl::Status MissingScope(std::string_view scope) {
@@ -178,13 +180,18 @@ absl::Status Access::CheckLimits(CallRecord* record) const {
 }
 
 void Access::Settle(const CallRecord& record) const {
+  if (calls_ != nullptr && record.refusal.has_value() &&
+      record.refusal != Refusal::kClientLimit) {
+    calls_->Charge(record.client, -1, Clock::now());
+  }
   if (work_ == nullptr || record.generated.count() == 0) return;
   work_->Charge(record.client, Seconds(record.generated).count(), Clock::now());
 }
 
 absl::Status Access::Identify(const grpc::CallbackServerContext& context,
                               CallRecord* record) const {
-  record->client = PeerHost(context);
+  record->client =
+      CertifiedName(context).value_or(ClientOfPeer(context.peer()));
   if (!tokens_.has_value()) {
     if (options_.trust_forwarded_for) {
       record->client = ForwardedHost(context).value_or(record->client);

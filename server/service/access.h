@@ -1,10 +1,12 @@
 // Access: who a call is from, and whether it may be made.
 //
 // Every call begins here (BeginCall, call_context.h). Its client is the subject
-// of its token ("sub:alice"), where tokens are asked for, else the host it
-// comes from ("ipv4:10.0.0.7"). A client may be held to so many calls at a time
-// and a second, and to so much of the workers. Health checks, and reflection
-// where it is on, are gRPC's own services and open to all.
+// of its token ("sub:alice"), where tokens are asked for; else the host that a
+// trusted proxy names; else who its certificate says ("cert:alice"), where
+// certificates are asked for; else the host it comes from (client_host.h). A
+// client may be held to so many calls at a time and a second, and to so much of
+// the workers. Health checks, and reflection where it is on, are gRPC's own
+// services and open to all.
 //
 // Threads: any.
 #ifndef TERRANE_SERVER_SERVICE_ACCESS_H_
@@ -29,6 +31,8 @@ namespace terrane::server {
 // only looks something up, terrane.generate for what computes, terrane.upload
 // for what is kept. Nothing for an unknown method, which nobody may call.
 std::optional<std::string_view> ScopeOf(std::string_view method);
+
+inline constexpr std::string_view kGenerateScope = "terrane.generate";
 
 inline constexpr std::string_view kTokenMissing = "TOKEN_MISSING";
 inline constexpr std::string_view kScopeMissing = "SCOPE_MISSING";
@@ -58,7 +62,8 @@ class Access {
   // WORK_RATE_EXCEEDED).
   absl::Status Admit(const grpc::CallbackServerContext& context,
                      CallRecord* record) const;
-  // The call is over: its client pays for what it took.
+  // The call is over: its client pays for what it took, and has back what it
+  // paid for a call that was refused after all.
   void Settle(const CallRecord& record) const;
 
  private:

@@ -17,6 +17,7 @@
 #ifndef TERRANE_SERVER_SERVICE_ADMISSION_H_
 #define TERRANE_SERVER_SERVICE_ADMISSION_H_
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <optional>
@@ -38,6 +39,12 @@ class Admission {
 
   PriceBook& prices() { return prices_; }
 
+  // Of a call whose request is not read, at most half of the time that it has
+  // left: it may be a small one among large ones, and an idle server finds out.
+  static double Credible(double seconds, TimeLeft left) {
+    if (!left.has_value()) return seconds;
+    return std::min(seconds, std::max(left->count() / 2, 0.0));
+  }
   // The class of a call of this price.
   static WorkClass ClassOf(double seconds);
   // What is expected of it, or the refusal (status.h, RetryLaterError).

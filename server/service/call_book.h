@@ -1,5 +1,6 @@
-// CallBook: where every call is entered, exactly once, when it is over: a line
-// in the log, its numbers in the metrics, its cost on its client's account.
+// CallBook: where every call is entered, once as it begins (the metrics count
+// it) and once when it is over: a line in the log, its numbers in the metrics,
+// its cost on its client's account.
 //
 // Threads: any. Costs microseconds and waits for no terminal and no network.
 #ifndef TERRANE_SERVER_SERVICE_CALL_BOOK_H_
@@ -18,12 +19,14 @@ class CallBook {
   CallBook(CallLog* log, Metrics* metrics, const Access* access)
       : log_(log), metrics_(metrics), access_(access) {}
 
+  void Open(const CallRecord& record) { metrics_->CountBegun(record); }
   // The call is over now.
   void Close(CallRecord* record) {
     record->total = CallRecord::Clock::now() - record->begin;
     log_->Write(*record);
     metrics_->Record(*record);
     access_->Settle(*record);
+    record->place.reset();
   }
 
  private:

@@ -56,6 +56,7 @@ CallRecord BeginCall(const ServiceParts& parts, const char* method,
   record.trace_id =
       TraceIdOf(Metadata(*context, kTraceKey)).value_or(std::string());
   context->AddInitialMetadata(kRequestIdKey, record.request_id);
+  parts.calls->Open(record);
   record.status = parts.access->Admit(*context, &record);
   AddPushback(record.status, context);
   return record;

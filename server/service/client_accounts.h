@@ -29,6 +29,7 @@ class ClientAccounts {
   double per_second() const { return per_second_; }
   // How long until the client's account holds something; 0 when it does.
   Seconds Wait(const std::string& client, Time now) const;
+  // A negative amount is given back.
   void Charge(const std::string& client, double amount, Time now);
   // Accounts kept: a full one is forgotten sooner or later.
   std::size_t size() const;

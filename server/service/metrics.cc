@@ -124,6 +124,9 @@ void AddGauges(const ServerGauges& gauges,
 
 Metrics::Metrics(std::span<const char* const> services, ServerGauges gauges)
     : gauges_(std::move(gauges)),
+      begun_(CounterFamily(&registry_, "terrane_rpc_begun_total",
+                           "Calls that have begun; those that are not in "
+                           "terrane_rpc_total are open.")),
       calls_(CounterFamily(&registry_, "terrane_rpc_total",
                            "Calls that are over, by gRPC code.")),
       seconds_(HistogramFamily(&registry_, "terrane_rpc_seconds",
@@ -167,11 +170,15 @@ const Metrics::MethodSeries& Metrics::Of(const char* method) {
   if (known != methods_.end()) return known->second;
   const prometheus::Labels labels{{"method", method}};
   return methods_
-      .emplace(method,
-               MethodSeries{&messages_.Add(labels), &samples_.Add(labels),
-                            &bytes_.Add(labels), &work_seconds_.Add(labels),
-                            &seconds_.Add(labels, CallSeconds())})
+      .emplace(method, MethodSeries{&begun_.Add(labels), &messages_.Add(labels),
+                                    &samples_.Add(labels), &bytes_.Add(labels),
+                                    &work_seconds_.Add(labels),
+                                    &seconds_.Add(labels, CallSeconds())})
       .first->second;
+}
+
+void Metrics::CountBegun(const CallRecord& record) {
+  Of(record.method).begun->Increment();
 }
 
 void Metrics::Record(const CallRecord& record) {

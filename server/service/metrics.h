@@ -51,6 +51,8 @@ class Metrics {
   Metrics(const Metrics&) = delete;
   Metrics& operator=(const Metrics&) = delete;
 
+  // Counts a call that has begun.
+  void CountBegun(const CallRecord& record);
   // Counts a call that is over, and its refusal if it was refused.
   void Record(const CallRecord& record);
   // Counts what was refused before it was a call, such as a connection.
@@ -64,6 +66,7 @@ class Metrics {
   using Histograms = prometheus::Family<prometheus::Histogram>;
 
   struct MethodSeries {
+    prometheus::Counter* begun;
     prometheus::Counter* messages;
     prometheus::Counter* samples;
     prometheus::Counter* bytes;
@@ -76,6 +79,7 @@ class Metrics {
 
   const ServerGauges gauges_;
   prometheus::Registry registry_;
+  Counters& begun_;
   Counters& calls_;
   Histograms& seconds_;
   Counters& messages_;

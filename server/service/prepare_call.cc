@@ -18,25 +18,42 @@ grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* PrepareCall::Start(
     const v1::PrepareTerrainRequest* request) {
   std::shared_ptr<PrepareCall> call(new PrepareCall(parts, context, request));
   call->self_ = call;
+  Work share;
   {
     std::unique_lock lock(call->mutex_);
-    if (!call->record_.status.ok()) {
-      call->outcome_ = call->record_.status;
+    const absl::Status status = call->Admit(&share);
+    if (!status.ok()) {
+      call->outcome_ = status;
       call->EndIfReady(std::move(lock));
       return call.get();
     }
     call->SetTimer();
   }
-  call->record_.call_class = CallClass::kBatch;
-  // Minutes, perhaps: batch work, whose end nobody can tell before it began.
-  Work share;
-  share.work_class = WorkClass::kBatch;
-  share.client = call->record_.client;
-  share.ticket = parts.workers->NextTicket();
-  share.call = share.ticket;
   parts.workers->Submit(std::move(share),
                         [call](core::TileScratch*) { call->Run(); });
   return call.get();
+}
+
+absl::Status PrepareCall::Admit(Work* share) {
+  if (!record_.status.ok()) return record_.status;
+  absl::Status status;
+  if (parts_.memory->Tight()) {
+    record_.refusal = Refusal::kMemory;
+    status = ShortOfMemoryError();
+  } else {
+    // Minutes, perhaps.
+    record_.call_class = CallClass::kBatch;
+    share->work_class = WorkClass::kBatch;
+    share->client = record_.client;
+    share->ticket = share->call = ticket_;
+    share->seconds =
+        Admission::Credible(parts_.admission->prices().Price(record_.method, 0),
+                            TimeLeft(*context_));
+    status = parts_.admission->Admit(*share, TimeLeft(*context_)).status();
+    if (!status.ok()) record_.refusal = Refusal::kDeadline;
+  }
+  AddPushback(status, context_);
+  return status;
 }
 
 void PrepareCall::Run() {
@@ -60,7 +77,12 @@ void PrepareCall::Run() {
   running_ = false;
   record_.queued = start - record_.begin;
   record_.generated = Clock::now() - start;
-  if (outcome.ok()) record_.recipe_hash = outcome->recipe_hash();
+  if (outcome.ok()) {
+    record_.recipe_hash = outcome->recipe_hash();
+    parts_.admission->prices().Learn(
+        record_.method, 0,
+        std::chrono::duration<double>(record_.generated).count());
+  }
   outcome_ = std::move(outcome);
   EndIfReady(std::move(lock));
 }
@@ -119,11 +141,15 @@ void PrepareCall::OnWriteDone(bool ok) {
 void PrepareCall::OnCancel() {
   stop_.request_stop();
   std::unique_lock lock(mutex_);
-  if (!running_ && !outcome_.has_value()) outcome_ = CancelStatus(*context_);
+  if (!running_ && !outcome_.has_value()) {
+    record_.queued = Clock::now() - record_.begin;
+    outcome_ = CancelStatus(*context_);
+  }
   EndIfReady(std::move(lock));
 }
 
 void PrepareCall::OnDone() {
+  parts_.workers->Leave(ticket_);
   parts_.calls->Close(&record_);
   self_.reset();
 }

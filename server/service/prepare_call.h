@@ -1,6 +1,8 @@
 // PrepareCall: one PrepareTerrain rpc.
 //
 // The preparation is one task of the worker pool; it only notes how far it is.
+// Admitted at the average price of its kind: what one takes is known when its
+// recipe has been read.
 // A timer sends that twice a second, also while the task is queued, unless a
 // slow reader still has the message before. The result is the last message.
 //
@@ -16,6 +18,7 @@
 #include <grpcpp/alarm.h>
 #include <grpcpp/support/server_callback.h>
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -43,8 +46,11 @@ class PrepareCall final
       : parts_(parts),
         context_(context),
         request_(request),
+        ticket_(parts.workers->NextTicket()),
         record_(BeginCall(parts, "PrepareTerrain", context)) {}
 
+  // OK when the call may wait for a worker, as `share`.
+  absl::Status Admit(Work* share);
   void Run();
   // Sets the timer for the next progress message. Under the mutex.
   void SetTimer();
@@ -55,6 +61,7 @@ class PrepareCall final
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
   const v1::PrepareTerrainRequest* const request_;
+  const std::uint64_t ticket_;  // its place among its client's calls
   std::stop_source stop_;
   std::shared_ptr<PrepareCall> self_;
 

@@ -8,8 +8,8 @@ namespace terrane::server {
 grpc::ServerReadReactor<v1::UploadRasterRequest>*
 RasterServiceImpl::UploadRaster(grpc::CallbackServerContext* context,
                                 v1::UploadRasterResponse* response) {
-  return new UploadCall(parts_, "UploadRaster", context, response,
-                        parts_.actor->BeginRasterUpload());
+  return StartUpload(parts_, "UploadRaster", context, response,
+                     parts_.actor->BeginRasterUpload());
 }
 
 grpc::ServerUnaryReactor* RasterServiceImpl::GetRaster(

@@ -92,6 +92,9 @@ class Server {
   void SetServing(bool serving);
 
   const Access access_;
+  // Before what its pointers name: tasks that a pool still runs as it goes use
+  // them.
+  ServiceParts parts_;
   MemoryWatch memory_;
   StreamGate gate_;
   WorkerPool workers_;
@@ -100,7 +103,6 @@ class Server {
   Linger linger_;
   Metrics metrics_;
   CallBook calls_;
-  ServiceParts parts_;
   TerrainServiceImpl terrain_service_;
   SurfaceServiceImpl surface_service_;
   TreeServiceImpl tree_service_;

@@ -8,8 +8,8 @@ namespace terrane::server {
 grpc::ServerReadReactor<v1::UploadSpotTableRequest>*
 SpotTableServiceImpl::UploadSpotTable(grpc::CallbackServerContext* context,
                                       v1::UploadSpotTableResponse* response) {
-  return new UploadCall(parts_, "UploadSpotTable", context, response,
-                        parts_.actor->BeginSpotTableUpload());
+  return StartUpload(parts_, "UploadSpotTable", context, response,
+                     parts_.actor->BeginSpotTableUpload());
 }
 
 grpc::ServerUnaryReactor* SpotTableServiceImpl::GetSpotTable(

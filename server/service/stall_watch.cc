@@ -1,5 +1,6 @@
 #include "server/service/stall_watch.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace terrane::server {
@@ -7,6 +8,8 @@ namespace {
 
 // Looks in the time of the limit: a stall is seen within a quarter more.
 constexpr int kLooks = 4;
+// What has gone is forgotten as often, however long the limit.
+constexpr std::chrono::seconds kLongestWait{5};
 
 }  // namespace
 
@@ -23,7 +26,10 @@ void StallWatch::Run(const std::stop_token& stop) {
   while (true) {
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_for(lock, stop, limit_ / kLooks, [] { return false; });
+      wake_.wait_for(
+          lock, stop,
+          std::min<std::chrono::milliseconds>(limit_ / kLooks, kLongestWait),
+          [] { return false; });
     }
     if (stop.stop_requested()) return;
     // Without the lock: what ends may go, and others may be added.

@@ -1,8 +1,8 @@
-// StallWatch: ends streams whose reader takes nothing any more.
+// StallWatch: ends streams whose client takes, or sends, nothing any more.
 //
 // Such a stream costs no worker, but two messages and a place among the open
-// streams, for as long as its client likes. A thread looks at every stream a
-// few times within the limit.
+// streams, or the room of an upload, for as long as its client likes. A thread
+// looks at every stream a few times within the limit.
 //
 // Threads: any. The destructor joins.
 #ifndef TERRANE_SERVER_SERVICE_STALL_WATCH_H_
@@ -21,7 +21,7 @@ namespace terrane::server {
 class Stallable {
  public:
   virtual ~Stallable() = default;
-  // Ends what has waited for its reader since then or longer.
+  // Ends what has waited for its client since then or longer.
   virtual void EndIfStalledSince(
       std::chrono::steady_clock::time_point moment) = 0;
 };

@@ -28,7 +28,6 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* TileStream::Start(
   std::shared_ptr<TileStream> stream(
       new TileStream(parts, method, context, std::move(source)));
   stream->self_ = stream;
-  parts.stalls->Add(stream);
   stream->EnterGate();
   return stream.get();
 }
@@ -57,21 +56,23 @@ void TileStream::EnterGate() {
   parts_.workers->SetBacklog(arriving);
   const absl::Status full =
       RetryLaterError("too many streams are waiting; try again", kRetryDelay);
+  // Once it has its ticket the stream can end at any time.
+  const std::shared_ptr<TileStream> keep = self_;
   {
     // Locked, so that the task cannot end the stream before the ticket is kept.
     std::lock_guard lock(mutex_);
-    queued_ = true;
+    queued_since_ = Clock::now();
     ticket_ = parts_.gate->Enter(
-        {record_.client, [stream = self_] { Submit(stream); },
-         [stream = self_, full] { stream->Refuse(Refusal::kStreams, full); }});
-    if (ticket_.has_value()) return;
+        {record_.client, [stream = keep] { Submit(stream); },
+         [stream = keep, full] { stream->Refuse(Refusal::kStreams, full); }});
   }
-  Refuse(Refusal::kStreams, full);
+  if (!ticket_.has_value()) return Refuse(Refusal::kStreams, full);
+  parts_.stalls->Add(keep);
 }
 
 void TileStream::Refuse(Refusal reason, const absl::Status& refusal) {
   std::unique_lock lock(mutex_);
-  queued_ = false;
+  queued_since_.reset();
   if (!end_.has_value()) {
     record_.refusal = reason;
     AddPushback(refusal, context_);
@@ -84,11 +85,8 @@ Work TileStream::Arriving() const {
   Work work;
   work.client = record_.client;
   work.ticket = work.call = call_ticket_;
-  work.seconds = parts_.admission->prices().Typical(record_.method);
-  // It may be a small one among large ones: an idle server finds out.
-  if (const Admission::TimeLeft left = TimeLeft(*context_)) {
-    work.seconds = std::min(work.seconds, left->count() / 2);
-  }
+  work.seconds = Admission::Credible(
+      parts_.admission->prices().Typical(record_.method), TimeLeft(*context_));
   return work;
 }
 
@@ -115,10 +113,10 @@ Work TileStream::NextWork() const {
 void TileStream::Submit(std::shared_ptr<TileStream> stream) {
   WorkerPool* const workers = stream->parts_.workers;
   Work work = stream->NextWork();
-  workers->Submit(
-      std::move(work),
-      [stream = std::move(stream), submitted = Clock::now()](
-          core::TileScratch* scratch) { stream->RunTask(submitted, scratch); });
+  workers->Submit(std::move(work),
+                  [stream = std::move(stream)](core::TileScratch* scratch) {
+                    stream->RunTask(scratch);
+                  });
 }
 
 double TileStream::SpentSeconds() const {
@@ -142,13 +140,14 @@ absl::Status TileStream::Price() {
   return admitted.status();
 }
 
-void TileStream::RunTask(Clock::time_point submitted,
-                         core::TileScratch* scratch) {
+void TileStream::RunTask(core::TileScratch* scratch) {
   const Clock::time_point start = Clock::now();
   {
     std::lock_guard lock(mutex_);
-    queued_ = false;
-    if (end_.has_value()) {  // cancelled while in the queue
+    const bool cancelled = end_.has_value();  // while in the queue
+    if (!cancelled) record_.queued += start - *queued_since_;
+    queued_since_.reset();
+    if (cancelled) {
       parts_.workers->Leave(call_ticket_);
       return;
     }
@@ -159,13 +158,14 @@ void TileStream::RunTask(Clock::time_point submitted,
                       : source_->Open(stop_.get_token(), &record_);
   std::unique_lock lock(mutex_);
   running_ = false;
-  record_.queued += start - submitted;
   record_.generated += Clock::now() - start;
   const absl::Status refusal =
       made.ok() && !opened_ ? Price() : absl::OkStatus();
   if (!refusal.ok()) {
-    record_.refusal = Refusal::kDeadline;
-    AddPushback(refusal, context_);
+    if (!end_.has_value()) {
+      record_.refusal = Refusal::kDeadline;
+      AddPushback(refusal, context_);
+    }
     EndWith(refusal);
   } else if (made.ok()) {
     ahead_ = *std::move(made);
@@ -196,8 +196,8 @@ void TileStream::EndWith(const absl::Status& status) {
 }
 
 bool TileStream::MayGenerate() const {
-  return !queued_ && !running_ && !ahead_.has_value() && !all_made_ &&
-         !end_.has_value();
+  return !queued_since_.has_value() && !running_ && !ahead_.has_value() &&
+         !all_made_ && !end_.has_value();
 }
 
 void TileStream::Advance(std::unique_lock<std::mutex> lock) {
@@ -210,7 +210,7 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
     write_began_ = Clock::now();
   }
   const bool generate = MayGenerate() && opened_;
-  if (generate) queued_ = true;
+  if (generate) queued_since_ = Clock::now();
   if (all_made_ && !ahead_.has_value() && !writing_) EndWith(absl::OkStatus());
   finished_ = end_.has_value() && !writing_ && !running_ && !cancelling_;
   const bool finish = finished_;
@@ -243,6 +243,9 @@ void TileStream::OnWriteDone(bool ok) {
 void TileStream::OnCancel() {
   stop_.request_stop();
   std::unique_lock lock(mutex_);
+  if (queued_since_.has_value() && !end_.has_value()) {
+    record_.queued += Clock::now() - *queued_since_;
+  }
   EndWith(CancelStatus(*context_));
   Advance(std::move(lock));
 }

@@ -65,7 +65,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   double SpentSeconds() const;
   // Prices the stream, whose source is open; OK when it can end in time.
   absl::Status Price();
-  void RunTask(Clock::time_point submitted, core::TileScratch* scratch);
+  void RunTask(core::TileScratch* scratch);
   // From an end, for the streams to come. Under the mutex.
   void Learn();
   // Ends the stream with a status, unless it has one.
@@ -92,8 +92,10 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   CallRecord record_;
   std::optional<StreamGate::Ticket> ticket_;
   std::optional<grpc::ByteBuffer> ahead_;  // made, not yet written
-  bool queued_ = false;                    // a task waits for a worker
-  bool running_ = false;                   // a worker is at it
+  // Since when it stands in line or a task of it waits for a worker; nothing
+  // when neither does.
+  std::optional<Clock::time_point> queued_since_;
+  bool running_ = false;  // a worker is at it
   bool writing_ = false;
   Clock::time_point write_began_;
   std::chrono::nanoseconds sending_{0};  // over all writes

@@ -79,16 +79,13 @@ std::string StringOf(const Json& claims, const char* name) {
                                                      : std::string();
 }
 
+// What is wrong with a token that the key has signed; null when it has not.
 const char* ProblemOf(const std::error_code& error) {
   if (error == jwt::VerificationErrc::TokenExpired) return "has expired";
   if (error == jwt::VerificationErrc::ImmatureSignature) {
     return "is not valid yet";
   }
-  if (error == jwt::VerificationErrc::InvalidAlgorithm ||
-      error == jwt::AlgorithmErrc::NoneAlgorithmUsed) {
-    return "is signed by an algorithm that is not accepted";
-  }
-  return "is malformed or its signature is not right";
+  return nullptr;
 }
 
 absl::StatusOr<TokenClaims> ReadClaims(const Json& claims,
@@ -147,36 +144,44 @@ class TokenVerifier::KnownTokens {
   }
 
  private:
-  static constexpr std::size_t kMost = 1024;
+  static constexpr std::size_t kMost = 16'384;
 
   std::mutex mutex_;
   std::unordered_map<std::string, TokenClaims> claims_;
 };
 
-TokenVerifier::TokenVerifier(TokenOptions options, std::string key,
-                             std::string algorithm)
-    : options_(std::move(options)),
-      key_(std::move(key)),
-      algorithm_(std::move(algorithm)),
-      known_(std::make_shared<KnownTokens>()) {}
+TokenVerifier::TokenVerifier(const TokenOptions& options)
+    : options_(options), known_(std::make_shared<KnownTokens>()) {}
 
-absl::StatusOr<TokenVerifier> TokenVerifier::Load(const TokenOptions& options) {
-  const std::string& name = options.key_file;
-  std::ifstream file(name, std::ios::binary);
+absl::StatusOr<TokenVerifier::Key> TokenVerifier::LoadKey(
+    const std::string& file_name) {
+  std::ifstream file(file_name, std::ios::binary);
   std::string pem{std::istreambuf_iterator<char>(file), {}};
-  if (!file) return KeyError(name, "cannot be read");
+  if (!file) return KeyError(file_name, "cannot be read");
   const std::unique_ptr<BIO, decltype(&BIO_free_all)> bio(
       BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())), BIO_free_all);
   const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
       PEM_read_bio_PUBKEY(bio.get(), nullptr, nullptr, nullptr), EVP_PKEY_free);
-  if (key == nullptr) return KeyError(name, "must hold a public key in PEM");
+  if (key == nullptr) {
+    return KeyError(file_name, "must hold a public key in PEM");
+  }
   std::string algorithm = AlgorithmOf(key.get());
   if (algorithm.empty()) {
-    return KeyError(name,
+    return KeyError(file_name,
                     "must be an RSA key of 2048 bits or more (RS256) or "
                     "one on the curve P-256 (ES256)");
   }
-  return TokenVerifier(options, std::move(pem), std::move(algorithm));
+  return Key{std::move(pem), std::move(algorithm)};
+}
+
+absl::StatusOr<TokenVerifier> TokenVerifier::Load(const TokenOptions& options) {
+  TokenVerifier verifier(options);
+  for (const std::string& file_name : options.key_files) {
+    absl::StatusOr<Key> key = LoadKey(file_name);
+    if (!key.ok()) return key.status();
+    verifier.keys_.push_back(*std::move(key));
+  }
+  return verifier;
 }
 
 absl::StatusOr<TokenClaims> TokenVerifier::Verify(
@@ -190,22 +195,32 @@ absl::StatusOr<TokenClaims> TokenVerifier::Verify(
 
 absl::StatusOr<TokenClaims> TokenVerifier::Check(std::string_view token) const {
   if (!HasForm(token)) return Invalid("is malformed");
+  for (const Key& key : keys_) {
+    if (auto claims = CheckWith(key, token)) return *std::move(claims);
+  }
+  return Invalid("is malformed or signed by no key that is accepted");
+}
+
+std::optional<absl::StatusOr<TokenClaims>> TokenVerifier::CheckWith(
+    const Key& key, std::string_view token) const {
   try {
     std::error_code error;
     const jwt::jwt_object object = jwt::decode(
         jwt::string_view(token.data(), token.size()),
-        jwt::params::algorithms(std::vector<std::string>{algorithm_}), error,
-        jwt::params::secret(key_), jwt::params::leeway(kLeewaySeconds),
+        jwt::params::algorithms(std::vector<std::string>{key.algorithm}), error,
+        jwt::params::secret(key.pem), jwt::params::leeway(kLeewaySeconds),
         jwt::params::verify(true));
     // OpenSSL's errors are the thread's, and gRPC reads them after its own
     // calls.
     ERR_clear_error();
-    if (error) return Invalid(ProblemOf(error));
-    return ReadClaims(object.payload().create_json_obj(), options_);
+    if (!error) return ReadClaims(object.payload().create_json_obj(), options_);
+    const char* const problem = ProblemOf(error);
+    if (problem == nullptr) return std::nullopt;
+    return Invalid(problem);
   } catch (const std::exception&) {
     // cpp-jwt throws where a part of the token is JSON of another kind.
     ERR_clear_error();
-    return Invalid("is malformed");
+    return std::nullopt;
   }
 }
 

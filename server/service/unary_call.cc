@@ -15,20 +15,31 @@ grpc::ServerUnaryReactor* UnaryCall::Start(const ServiceParts& parts,
     call->End(record.status);
     return call.get();
   }
-  record.estimated_seconds = parts.admission->prices().Price(method, 0);
   Work share;
-  share.client = record.client;
-  share.ticket = parts.workers->NextTicket();
-  share.call = share.ticket;
-  share.seconds = record.estimated_seconds;
-  const auto admitted = parts.admission->Admit(share, TimeLeft(*context));
-  if (!admitted.ok()) {
-    call->Refuse(admitted.status());
+  if (const absl::Status status = call->Admit(&share); !status.ok()) {
+    call->Refuse(status);
     return call.get();
   }
   parts.workers->Submit(std::move(share),
                         [call](core::TileScratch*) { call->Run(); });
   return call.get();
+}
+
+absl::Status UnaryCall::Admit(Work* share) {
+  // What only looks something up takes no memory.
+  if (ScopeOf(record_.method) == kGenerateScope && parts_.memory->Tight()) {
+    record_.refusal = Refusal::kMemory;
+    return ShortOfMemoryError();
+  }
+  record_.estimated_seconds =
+      parts_.admission->prices().Price(record_.method, 0);
+  share->client = record_.client;
+  share->ticket = share->call = ticket_;
+  share->seconds = parts_.admission->Credible(record_.estimated_seconds,
+                                              TimeLeft(*context_));
+  const auto admitted = parts_.admission->Admit(*share, TimeLeft(*context_));
+  if (!admitted.ok()) record_.refusal = Refusal::kDeadline;
+  return admitted.status();
 }
 
 void UnaryCall::Refuse(const absl::Status& refusal) {
@@ -37,7 +48,6 @@ void UnaryCall::Refuse(const absl::Status& refusal) {
     if (state_ != State::kQueued) return;  // cancelled meanwhile
     state_ = State::kFinished;
   }
-  record_.refusal = Refusal::kDeadline;
   AddPushback(refusal, context_);
   End(refusal);
 }
@@ -72,6 +82,7 @@ void UnaryCall::OnCancel() {
     if (state_ != State::kQueued) return;
     state_ = State::kFinished;
   }
+  record_.queued = CallRecord::Clock::now() - record_.begin;
   End(CancelStatus(*context_));
 }
 
@@ -84,6 +95,7 @@ void UnaryCall::End(absl::Status status) {
 }
 
 void UnaryCall::OnDone() {
+  parts_.workers->Leave(ticket_);
   record_.sending = CallRecord::Clock::now() - send_begin_;
   parts_.calls->Close(&record_);
   self_.reset();

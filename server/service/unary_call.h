@@ -45,8 +45,11 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
       : parts_(parts),
         context_(context),
         handler_(std::move(handler)),
+        ticket_(parts.workers->NextTicket()),
         record_(BeginCall(parts, method, context)) {}
 
+  // OK when the call may wait for a worker, as `share`.
+  absl::Status Admit(Work* share);
   void Refuse(const absl::Status& refusal);
   void Run();
   void End(absl::Status status);
@@ -54,6 +57,7 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
   const Handler handler_;
+  const std::uint64_t ticket_;  // its place among its client's calls
   std::stop_source stop_;
   CallRecord record_;
   CallRecord::Clock::time_point send_begin_;

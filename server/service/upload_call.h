@@ -2,7 +2,8 @@
 //
 // Reads a message, hands it to a worker (hashing a chunk takes milliseconds),
 // reads the next. One of both is always under way until Finish, so a cancelled
-// call ends by itself: its read fails.
+// call ends by itself: its read fails. So does one whose client sends nothing
+// for too long: the room that its content takes is others', too.
 //
 // Lifetime: owns itself until OnDone.
 #ifndef TERRANE_SERVER_SERVICE_UPLOAD_CALL_H_
@@ -10,9 +11,12 @@
 
 #include <grpcpp/support/server_callback.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "server/service/call_context.h"
@@ -21,25 +25,30 @@
 namespace terrane::server {
 
 template <typename Request, typename Response>
-class UploadCall final : public grpc::ServerReadReactor<Request> {
+class UploadCall final : public grpc::ServerReadReactor<Request>,
+                         public Stallable {
  public:
-  UploadCall(const ServiceParts& parts, const char* method,
-             grpc::CallbackServerContext* context, Response* response,
-             std::unique_ptr<Upload<Request, Response>> upload)
-      : parts_(parts),
-        context_(context),
-        response_(response),
-        record_(BeginCall(parts, method, context)),
-        ticket_(parts.workers->NextTicket()),
-        upload_(std::move(upload)) {
-    if (record_.status.ok()) {
-      ReadNext();
+  static grpc::ServerReadReactor<Request>* Start(
+      const ServiceParts& parts, const char* method,
+      grpc::CallbackServerContext* context, Response* response,
+      std::unique_ptr<Upload<Request, Response>> upload) {
+    std::shared_ptr<UploadCall> call(
+        new UploadCall(parts, method, context, response, std::move(upload)));
+    call->self_ = call;
+    if (call->record_.status.ok()) {
+      parts.stalls->Add(call);
+      call->ReadNext();
     } else {
-      End(record_.status);
+      call->End(call->record_.status);
     }
+    return call.get();
   }
 
   void OnReadDone(bool ok) override {
+    {
+      std::lock_guard lock(mutex_);
+      reading_since_.reset();
+    }
     Work share;
     share.client = record_.client;
     share.ticket = ticket_;
@@ -58,11 +67,38 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
 
   void OnDone() override {
     parts_.calls->Close(&record_);
-    delete this;
+    self_.reset();
+  }
+
+  void EndIfStalledSince(
+      std::chrono::steady_clock::time_point moment) override {
+    {
+      std::lock_guard lock(mutex_);
+      if (!reading_since_.has_value() || *reading_since_ > moment) return;
+      stalled_ = true;
+      cancelling_ = true;
+    }
+    context_->TryCancel();  // the read fails; reactions may run in here
+    {
+      std::lock_guard lock(mutex_);
+      cancelling_ = false;
+      if (!ended_) return;
+    }
+    FinishAtLast();
   }
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  UploadCall(const ServiceParts& parts, const char* method,
+             grpc::CallbackServerContext* context, Response* response,
+             std::unique_ptr<Upload<Request, Response>> upload)
+      : parts_(parts),
+        context_(context),
+        response_(response),
+        record_(BeginCall(parts, method, context)),
+        ticket_(parts.workers->NextTicket()),
+        upload_(std::move(upload)) {}
 
   void Add(Clock::time_point start) {
     const absl::Status status = upload_->Add(part_);
@@ -83,10 +119,17 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
       AddPushback(refusal, context_);
       return End(refusal);
     }
+    {
+      std::lock_guard lock(mutex_);
+      reading_since_ = Clock::now();
+    }
     this->StartRead(&part_);
   }
 
   void Complete(Clock::time_point start) {
+    if (stalled_) {
+      return End(absl::AbortedError("the client sends nothing any more"));
+    }
     if (context_->IsCancelled()) return End(CancelStatus(*context_));
     absl::StatusOr<Response> response = upload_->Finish();
     record_.generated += Clock::now() - start;
@@ -97,6 +140,15 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
   void End(absl::Status status) {
     upload_.reset();
     record_.status = std::move(status);
+    {
+      std::lock_guard lock(mutex_);
+      ended_ = true;
+      if (cancelling_) return;
+    }
+    FinishAtLast();
+  }
+
+  void FinishAtLast() {
     parts_.linger->Then(context_->peer(), [this] {
       this->Finish(ToGrpcStatus(record_.status, record_.request_id));
     });
@@ -109,7 +161,25 @@ class UploadCall final : public grpc::ServerReadReactor<Request> {
   const std::uint64_t ticket_;
   std::unique_ptr<Upload<Request, Response>> upload_;
   Request part_;
+  std::shared_ptr<UploadCall> self_;
+
+  std::mutex mutex_;
+  // Since when a message is waited for.
+  std::optional<Clock::time_point> reading_since_;
+  bool cancelling_ = false;  // the watch ends it, and needs the context
+  bool ended_ = false;       // its status is there
+  std::atomic<bool> stalled_ = false;
 };
+
+// The reactor of a call whose content `upload` takes.
+template <typename Request, typename Response>
+grpc::ServerReadReactor<Request>* StartUpload(
+    const ServiceParts& parts, const char* method,
+    grpc::CallbackServerContext* context, Response* response,
+    std::unique_ptr<Upload<Request, Response>> upload) {
+  return UploadCall<Request, Response>::Start(parts, method, context, response,
+                                              std::move(upload));
+}
 
 }  // namespace terrane::server
 

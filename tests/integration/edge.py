@@ -9,7 +9,7 @@ import grpc
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
 
-from real_server import STUBS, endless_request  # noqa: E402
+from real_server import FAR_DEADLINE_SECONDS, STUBS, endless_request  # noqa: E402
 
 INFO = "/terrane.v1.InfoService/GetServerInfo"
 TILES = "/terrane.v1.TerrainService/StreamTiles"
@@ -25,11 +25,11 @@ class Authority:
         openssl("req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "2",
                 "-subj", f"/CN={name}", "-keyout", self.key, "-out", self.certificate)
 
-    def issue(self, name):
-        """The files of a new certificate for localhost, and of its key."""
+    def issue(self, name, names="DNS:localhost,IP:127.0.0.1"):
+        """The files of a new certificate, for localhost unless said otherwise, and of its key."""
         certificate, key, request = (self.folder / f"{self.name}-{name}{end}" for end in (".pem", ".key", ".csr"))
         openssl("req", "-new", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-subj", f"/CN={name}",
-                "-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1", "-keyout", key, "-out", request)
+                "-addext", f"subjectAltName={names}", "-keyout", key, "-out", request)
         openssl("x509", "-req", "-in", request, "-CA", self.certificate, "-CAkey", self.key, "-days", "2",
                 "-copy_extensions", "copy", "-out", certificate)
         return certificate, key
@@ -61,7 +61,7 @@ def all_methods():
 
 def call(channel, method, request=b"", metadata=(), **options):
     """What became of a call of any kind with an empty request: its code, text and trailing metadata."""
-    answers = channel.stream_stream(method)(iter([request]), metadata=metadata, timeout=30, **options)
+    answers = channel.stream_stream(method)(iter([request]), metadata=metadata, timeout=FAR_DEADLINE_SECONDS, **options)
     try:
         for _ in answers:
             pass

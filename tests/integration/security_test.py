@@ -8,6 +8,8 @@ Usage: security_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
 """
 
 import base64
+import collections
+import contextlib
 import hashlib
 import hmac
 import json
@@ -23,7 +25,7 @@ import jwt
 from grpc import StatusCode
 
 from edge import INFO, TILES, Authority, all_methods, call, endless, key_pair
-from real_server import SERVER, TERRANE, RealServer, common_pb2, main, served, tiles_request, wait_until
+from real_server import PATIENCE_SECONDS, SERVER, TERRANE, RealServer, common_pb2, main, served, tiles_request, wait_until
 
 METHODS = all_methods()
 ISSUER, AUDIENCE = "https://issuer.test", "terrane"
@@ -38,7 +40,8 @@ class EdgeTest(unittest.TestCase):
 
     def refused_start(self, *flags, code, listen="127.0.0.1:0"):
         """What a server says that does not start."""
-        done = subprocess.run([SERVER, "--listen", listen, *map(str, flags)], capture_output=True, text=True, timeout=20)
+        done = subprocess.run([SERVER, "--listen", listen, *map(str, flags)], capture_output=True, text=True,
+                              timeout=PATIENCE_SECONDS)
         self.assertEqual(done.returncode, code, done.stderr)
         return done.stderr
 
@@ -71,7 +74,7 @@ class TlsTest(EdgeTest):
         """The serial number of the certificate that a handshake shows; None if it fails."""
         # What HTTP/2 says after the handshake is no text.
         done = subprocess.run(["openssl", "s_client", "-connect", server.address, "-alpn", "h2", *flags], input="", text=True,
-                              errors="replace", capture_output=True, timeout=20)
+                              errors="replace", capture_output=True, timeout=PATIENCE_SECONDS)
         if "BEGIN CERTIFICATE" not in done.stdout:
             return None
         return subprocess.run(["openssl", "x509", "-noout", "-serial"], input=done.stdout, text=True, capture_output=True).stdout
@@ -95,10 +98,7 @@ class TlsTest(EdgeTest):
             before = self.presented(server)
             for source, file in zip(self.authority.issue("renewed"), files):
                 source.rename(file)
-            deadline = time.monotonic() + 40
-            while (after := self.presented(server)) in (before, None):
-                self.assertLess(time.monotonic(), deadline, "the new certificate is not used")
-                time.sleep(0.5)
+            self.assertTrue(wait_until(lambda: self.presented(server) not in (before, None)), "the new certificate is not used")
             self.assertEqual(call(channel, INFO)[0], StatusCode.OK)
 
     def test_a_client_certificate_is_demanded_and_checked(self):
@@ -136,6 +136,14 @@ class TlsTest(EdgeTest):
             self.terrane(*ask, "--tls", "--tls-ca", self.stranger.certificate, expected=4)
             self.assertIn("--tls-key", self.terrane(*ask, "--tls", "--tls-cert", certificate, expected=2))
             self.assertIn("--tls", self.terrane(*ask, "--tls-ca", self.authority.certificate, expected=2))
+
+    def test_the_client_checks_replicas_against_one_name(self):
+        with served(*self.tls) as first, served(*self.tls) as second:
+            ask = ["info", "--server", f"{first.address},{second.address}", "--tls", "--tls-ca", self.authority.certificate]
+            self.terrane(*ask, "--tls-name", "localhost")
+            self.terrane(*ask, TERRANE_TLS_NAME="localhost")
+            self.terrane(*ask, "--tls-name", "server.test", expected=4)
+            self.assertIn("--tls-name", self.terrane(*ask, expected=1))
 
 
 class TokenTest(EdgeTest):
@@ -189,8 +197,12 @@ class TokenTest(EdgeTest):
             self.assertEqual(self.call(self.token(**changes))[0], StatusCode.OK, changes)
 
     def test_a_known_token_expires_all_the_same(self):
-        token = self.token(exp=int(time.time()) - 27)
-        self.assertEqual(self.call(token)[0], StatusCode.OK)
+        made = 0
+        while time.time() - made > 2:  # known while it was good, however slow the machine
+            made = time.time()
+            token = self.token(exp=int(made) - 27)
+            answer = self.call(token)
+        self.assertEqual(answer[0], StatusCode.OK)
         time.sleep(5)
         self.assert_refused(self.call(token), StatusCode.UNAUTHENTICATED, "TOKEN_INVALID")
 
@@ -221,11 +233,13 @@ class TokenTest(EdgeTest):
             f"{header}.{payload[:-4]}AAAA.{signature}", f"{header}.{payload}.{signature[:-8]}", f"{header}.{payload}.",
             f"{header}.{payload}", header, "..", ".", "a.b.c", f"{good}.{signature}", f"{header}.{payload}.{signature}=", "*.*.*",
             good.replace(".", "~"), f" {good}"]
+        logged = len(self.server.calls())
         for token in bad:
             self.assert_refused(self.call(token), StatusCode.UNAUTHENTICATED, "TOKEN_INVALID")
         twice = call(self.channel, INFO, metadata=[("authorization", f"Bearer {good}")] * 2)
         self.assert_refused(twice, StatusCode.UNAUTHENTICATED, "TOKEN_MISSING")
         self.assertEqual(self.call(good)[0], StatusCode.OK)
+        self.assertTrue(wait_until(lambda: len(self.server.calls()) >= logged + len(bad) + 2))
         log = self.server.log_text()
         self.assertIn("TOKEN_INVALID", log)
         for secret in (header, payload, signature, "alice"):
@@ -235,6 +249,17 @@ class TokenTest(EdgeTest):
         with served("--jwt-key", self.ec_public) as server, grpc.insecure_channel(server.address) as channel:
             for token, code in [(self.token(self.ec_private, "ES256"), StatusCode.OK), (self.token(), StatusCode.UNAUTHENTICATED)]:
                 self.assertEqual(call(channel, INFO, metadata=[("authorization", f"Bearer {token}")])[0], code)
+
+    def test_while_a_key_changes_tokens_of_both_are_taken(self):
+        with served("--jwt-key", self.ec_public, "--jwt-key", self.public) as server, grpc.insecure_channel(server.address) as channel:
+            expired = self.token(exp=int(time.time()) - 100)
+            for token, code, text in [(self.token(self.ec_private, "ES256"), StatusCode.OK, ""), (self.token(), StatusCode.OK, ""),
+                                      (expired, StatusCode.UNAUTHENTICATED, "has expired"),
+                                      (self.token(key_pair(self.folder, "third", "EC", "ec_paramgen_curve:P-256")[0], "ES256"),
+                                       StatusCode.UNAUTHENTICATED, "signed by no key")]:
+                answer = call(channel, INFO, metadata=[("authorization", f"Bearer {token}")])
+                self.assertEqual(answer[0], code, answer[1])
+                self.assertIn(text, answer[1])
 
     def test_keys_that_will_not_do_stop_the_start(self):
         _, short = key_pair(self.folder, "short", "RSA", "rsa_keygen_bits:1024")
@@ -270,10 +295,7 @@ class ClientLimitTest(EdgeTest):
         self.assert_told_to_wait(call(channel, INFO, metadata=one), "TOO_MANY_CALLS")
         self.assertEqual(call(channel, INFO, metadata=other)[0], StatusCode.OK)
         stream.cancel()
-        deadline = time.monotonic() + 10
-        while call(channel, INFO, metadata=one)[0] != StatusCode.OK:
-            self.assertLess(time.monotonic(), deadline, "the place is not free again")
-            time.sleep(0.05)
+        self.assertTrue(wait_until(lambda: call(channel, INFO, metadata=one)[0] == StatusCode.OK), "the place is not free again")
 
     def test_a_subject_has_its_places(self):
         private, public = key_pair(self.folder, "limit", "EC", "ec_paramgen_curve:P-256")
@@ -284,11 +306,33 @@ class ClientLimitTest(EdgeTest):
             with grpc.insecure_channel(server.address) as channel:
                 self.assert_counts(channel, alice, bob)
 
+    def test_a_certificate_has_its_places(self):
+        authority = Authority(self.folder, "authority")
+        certificate, key = authority.issue("server")
+        with contextlib.ExitStack() as stack:
+            server = stack.enter_context(served("--tls-cert", certificate, "--tls-key", key, "--tls-client-ca",
+                                                authority.certificate, "--client-streams", 1))
+            channels = []
+            for name in ("alice", "bob"):
+                pair = authority.issue(name, names=f"DNS:{name}")
+                channels.append(stack.enter_context(grpc.secure_channel(server.address, grpc.ssl_channel_credentials(
+                    authority.certificate.read_bytes(), pair[1].read_bytes(), pair[0].read_bytes()))))
+            alice, bob = channels
+            stream = endless(alice)
+            self.assert_told_to_wait(call(alice, INFO), "TOO_MANY_CALLS")
+            self.assertEqual(call(bob, INFO)[0], StatusCode.OK)
+            stream.cancel()
+
     def test_a_host_behind_the_proxy_has_its_places(self):
         one, other = [("x-forwarded-for", "9.9.9.9, 10.0.0.1")], [("x-forwarded-for", "10.0.0.1, 2001:db8::1")]
+        neighbour = [("x-forwarded-for", "2001:db8::2")]
         with served("--trust-forwarded-for", "--client-streams", 1) as server:
             with grpc.insecure_channel(server.address) as channel:
                 self.assert_counts(channel, one, other)
+                # An IPv6 network is one client.
+                stream = endless(channel, neighbour)
+                self.assert_told_to_wait(call(channel, INFO, metadata=other), "TOO_MANY_CALLS")
+                stream.cancel()
                 # What is no address counts for the proxy itself.
                 self.assert_counts(channel, [("x-forwarded-for", "nonsense")], one)
 
@@ -302,32 +346,39 @@ class ClientLimitTest(EdgeTest):
 
     def test_a_client_has_its_rate(self):
         with served("--trust-forwarded-for", "--client-rate", 0.5) as server, server.channel() as channel:
-            taken = 0
+            taken, begun = 0, time.monotonic()
             while (answer := call(channel, INFO, metadata=self.ONE))[0] == StatusCode.OK:
                 taken += 1
-            # What comes in ten seconds, and the call that overdraws it.
-            self.assertIn(taken, (6, 7))
+            # What comes in ten seconds, the call that overdraws it, and what came meanwhile.
+            self.assertGreaterEqual(taken, 6)
+            self.assertLessEqual(taken, 7 + 0.5 * (time.monotonic() - begun))
             wait = self.assert_told_to_wait(answer, "CALL_RATE_EXCEEDED")
             self.assertLessEqual(wait, 2)
-            # Refusals cost the client nothing.
-            for _ in range(10):
-                self.assert_told_to_wait(call(channel, INFO, metadata=self.ONE), "CALL_RATE_EXCEEDED")
             self.assertEqual(call(channel, INFO, metadata=self.OTHER)[0], StatusCode.OK)
             time.sleep(wait)
             self.assertEqual(call(channel, INFO, metadata=self.ONE)[0], StatusCode.OK)
+
+    def test_refusals_cost_a_client_nothing(self):
+        with served("--trust-forwarded-for", "--client-rate", 0.01) as server, server.channel() as channel:
+            self.assertEqual(call(channel, INFO, metadata=self.ONE)[0], StatusCode.OK)
+            waits = [self.assert_told_to_wait(call(channel, INFO, metadata=self.ONE), "CALL_RATE_EXCEEDED") for _ in range(10)]
+            self.assertEqual(waits, sorted(waits, reverse=True))
 
     def test_a_client_pays_for_its_work(self):
         workers = 0.001
         with served("--trust-forwarded-for", "--client-workers", workers) as server, server.channel() as channel:
             request = tiles_request(level=12, window=(0, 0, 4096, 4096)).SerializeToString()
+            begun = time.monotonic()
             self.assertEqual(call(channel, TILES, request, metadata=self.ONE)[0], StatusCode.OK)
             self.assertTrue(wait_until(server.calls))
             worked = server.calls()[0]["generate_ms"] / 1000
             wait = self.assert_told_to_wait(call(channel, INFO, metadata=self.ONE), "WORK_RATE_EXCEEDED")
-            self.assertAlmostEqual(wait, worked / workers - 10, delta=5)
+            # What came meanwhile is paid back.
+            passed = time.monotonic() - begun
+            self.assertTrue(-passed - 1 < wait - (worked / workers - 10) < 1, (wait, worked, passed))
             self.assertEqual(call(channel, INFO, metadata=self.OTHER)[0], StatusCode.OK)
             self.assertTrue(wait_until(lambda: len(server.calls()) == 3))
-            self.assertEqual([line.get("reason") for line in server.calls()], [None, "client_limit", None])
+            self.assertEqual(collections.Counter(line.get("reason") for line in server.calls()), {None: 2, "client_limit": 1})
 
 
 if __name__ == "__main__":

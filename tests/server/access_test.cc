@@ -108,6 +108,19 @@ TEST(ClientAccounts, ADebtIsPaidBeforeAnythingElse) {
   EXPECT_EQ(accounts.Wait("sub:alice", kStart + Seconds(229)), Seconds(1));
 }
 
+TEST(ClientAccounts, WhatIsGivenBackMayBeUsedAgain) {
+  ClientAccounts accounts(1);
+  accounts.Charge("sub:alice", 10, kStart);
+  accounts.Charge("sub:alice", 1, kStart);
+  EXPECT_EQ(accounts.Wait("sub:alice", kStart), Seconds(1));
+  accounts.Charge("sub:alice", -1, kStart);
+  EXPECT_EQ(accounts.Wait("sub:alice", kStart), Seconds(0));
+  // A full account holds no more for it.
+  accounts.Charge("sub:bob", -5, kStart);
+  accounts.Charge("sub:bob", 11, kStart);
+  EXPECT_EQ(accounts.Wait("sub:bob", kStart), Seconds(1));
+}
+
 TEST(ClientAccounts, OfThoseThatAreFullHardlyAnyIsKept) {
   ClientAccounts accounts(10);
   accounts.Charge("debtor", 1000, kStart);

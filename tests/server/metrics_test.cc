@@ -43,6 +43,7 @@ class MetricsTest : public ::testing::Test {
 TEST_F(MetricsTest, SeriesExistBeforeTheFirstCall) {
   const Exposition text = Read();
   EXPECT_EQ(text["terrane_rpc_total{code=\"OK\",method=\"GetRaster\"}"], 0);
+  EXPECT_EQ(text["terrane_rpc_begun_total{method=\"GetRaster\"}"], 0);
   EXPECT_EQ(text["terrane_rpc_seconds_count{method=\"UploadRaster\"}"], 0);
   EXPECT_EQ(text["terrane_bytes_total{method=\"UploadRaster\"}"], 0);
   EXPECT_EQ(text["terrane_refusals_total{reason=\"streams\"}"], 0);

@@ -3,17 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "tests/server/exposition.h"
 #include "tests/server/fake_actor.h"
-#include "tests/server/http_exchange.h"
 #include "tests/server/recipe_text.h"
-#include "tests/server/served.h"
+#include "tests/server/scrape.h"
 
 namespace terrane::server {
 namespace {
@@ -24,33 +23,10 @@ using ::testing::HasSubstr;
 using ::testing::IsSubsetOf;
 using ::testing::StartsWith;
 
-ServerOptions WithHttp() {
-  ServerOptions options;
-  options.http_listen = "127.0.0.1:0";
-  return options;
-}
-
 v1::StreamTilesRequest Tiles(int count) {
   v1::StreamTilesRequest request;
   request.set_tile_size(count);
   return request;
-}
-
-Exposition Scrape(Served* served) {
-  return Exposition(
-      HttpBody(HttpGet(*served->server().http_port(), "/metrics")));
-}
-
-double Calls(const Exposition& text, const std::string& method,
-             const std::string& code) {
-  return text["terrane_rpc_total{code=\"" + code + "\",method=\"" + method +
-              "\"}"];
-}
-
-// A call is counted a moment after its client has the answer.
-template <typename Condition>
-bool EventuallyScraped(Served* served, Condition condition) {
-  return Eventually([&] { return condition(Scrape(served)); });
 }
 
 // As many streams as a server takes that has room for one: it runs, four stand
@@ -213,6 +189,14 @@ TEST(ServedMetricsTest, RefusedAndCancelledStreamsCount) {
     return Calls(text, "StreamTiles", "CANCELLED") >= 5 &&
            text["terrane_workers_busy"] == 0;
   }));
+  // What has begun is over: done, refused or cancelled.
+  EXPECT_TRUE(EventuallyScraped(&served, [](const Exposition& text) {
+    double over = 0;
+    for (const char* code : {"OK", "RESOURCE_EXHAUSTED", "CANCELLED"}) {
+      over += std::max(Calls(text, "StreamTiles", code), 0.0);
+    }
+    return text["terrane_rpc_begun_total{method=\"StreamTiles\"}"] == over;
+  }));
 }
 
 TEST(ServedMetricsTest, MemoryLimitIsExportedWhenThereIsOne) {
@@ -242,6 +226,19 @@ TEST(ServedMemoryTest, StreamsAreRefusedWhenMemoryIsTight) {
     return text["terrane_refusals_total{reason=\"memory\"}"] == 1;
   }));
   EXPECT_EQ(actor.tiles().started, 0);
+  // So are other calls that generate.
+  grpc::ClientContext heights_context;
+  v1::GetHeightsResponse heights;
+  EXPECT_EQ(
+      served.terrain->GetHeights(&heights_context, {}, &heights).error_code(),
+      grpc::StatusCode::RESOURCE_EXHAUSTED);
+  grpc::ClientContext prepare_context;
+  EXPECT_EQ(served.terrain->PrepareTerrain(&prepare_context, {})
+                ->Finish()
+                .error_code(),
+            grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_TRUE(prepare_context.GetServerTrailingMetadata().contains(
+      "grpc-retry-pushback-ms"));
   // What takes no memory is answered.
   grpc::ClientContext info_context;
   v1::GetServerInfoResponse response;
@@ -265,7 +262,7 @@ TEST(ServedProbesTest, ReadinessEndsWithTheDrain) {
   ASSERT_TRUE(Eventually([&] { return actor.tiles().started == 1; }));
   std::thread drain([&served] {
     served.server().Drain(std::chrono::milliseconds(10),
-                          std::chrono::seconds(10));
+                          std::chrono::seconds(60));
   });
   EXPECT_TRUE(Eventually([port] {
     return HttpGet(port, "/readyz").starts_with("HTTP/1.1 503 ");
@@ -344,7 +341,7 @@ TEST(ServedLogTest, SlowReadersShowInTheTimeOfSending) {
   const auto reader = served.terrain->StreamTiles(&context, Tiles(2));
   // The second tile is begun when the first is being written.
   ASSERT_TRUE(Eventually([&] { return actor.tiles().started == 2; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  std::this_thread::sleep_for(std::chrono::seconds(2));
   for (v1::StreamTilesResponse message; reader->Read(&message);) {
   }
   EXPECT_TRUE(reader->Finish().ok());
