@@ -5,7 +5,6 @@ Usage: restart_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
 """
 
 import filecmp
-import json
 import pathlib
 import signal
 import subprocess
@@ -18,7 +17,8 @@ from hyperframe import frame as frames
 
 from fault import TimedTest
 from http2 import Http2Client
-from real_server import HEALTH_WATCH, NOT_SERVING, SERVING, TERRANE, main, tiles_request, wait_until
+from real_server import FAR_DEADLINE_SECONDS, HEALTH_WATCH, NOT_SERVING, PATIENCE_SECONDS, SERVING, TERRANE, main
+from real_server import tiles_request, wait_until
 
 
 class Load:
@@ -37,11 +37,15 @@ class Load:
 
     def _watch(self):
         with self._server.channel() as channel:
-            watch = channel.unary_stream(HEALTH_WATCH)(b"", timeout=15)
-            for answer in watch:
-                if answer != SERVING:
-                    self.serving = answer != NOT_SERVING
-                    break
+            watch = channel.unary_stream(HEALTH_WATCH)(b"")
+            try:
+                for answer in watch:
+                    if answer != SERVING:
+                        self.serving = answer != NOT_SERVING
+                        break
+            except grpc.RpcError as error:  # it has gone without a word
+                self.failed.append(error)
+                self.serving = False
             watch.cancel()
 
     def _call(self):
@@ -49,7 +53,8 @@ class Load:
             stub = self._server.terrain(channel)
             while self.serving:
                 try:
-                    messages = list(stub.StreamTiles(tiles_request(window=(0, 0, 200, 200), tile_size=50), timeout=10))
+                    request = tiles_request(window=(0, 0, 200, 200), tile_size=50)
+                    messages = list(stub.StreamTiles(request, timeout=FAR_DEADLINE_SECONDS))
                     assert len(messages) == 17
                     with self._lock:
                         self.done += 1
@@ -81,7 +86,8 @@ class GentleEnd(TimedTest):
         return streams
 
     def test_sigterm_under_load_fails_no_call(self):
-        server = self.start_server("--workers", "2", "--drain-seconds", "10")
+        # Seconds of grace, in which every client hears of it even when it stands still for a moment.
+        server = self.start_server("--workers", "2", "--grace-seconds", "5", "--drain-seconds", "60")
         load = Load(server)
         self.assertTrue(wait_until(lambda: load.done > 5))
         streams = self.long_streams(server, 4, 24)
@@ -90,14 +96,14 @@ class GentleEnd(TimedTest):
         for stream in streams:
             self.assertEqual(sum(message.HasField("tile") for message in stream), 24 * 24)
         load.join()
-        self.assertEqual(server.process.wait(12), 0)
+        self.assertEqual(server.end(), 0)
         self.assertEqual(load.failed, [])
         codes = {call["code"] for call in server.calls()}
         self.assertEqual(codes, {"OK"})
 
     def test_a_slow_reader_gets_the_end_of_its_stream(self):
         """The connection ends with its last stream: not before the kernel has sent what it holds of it."""
-        server = self.start_server("--drain-seconds", "15")
+        server = self.start_server("--drain-seconds", "100")
         client = Http2Client(server, window=64 << 20)
         self.addCleanup(client.close)
         heights = 2 << 20
@@ -111,13 +117,13 @@ class GentleEnd(TimedTest):
             if isinstance(frame, frames.DataFrame):
                 bytes_read += len(frame.data)
                 # Had the server's end of the connection gone, this would cut off what is on its way.
-                client.send(frames.WindowUpdateFrame(0, window_increment=len(frame.data)))
+                client.answer(frames.WindowUpdateFrame(0, window_increment=len(frame.data)))
                 time.sleep(0.002)
             elif isinstance(frame, frames.HeadersFrame):
                 trailers = client.headers_of(frame)
         self.assertEqual(trailers["grpc-status"], "0")
         self.assertGreater(bytes_read, 4 * heights)
-        self.assertEqual(server.process.wait(10), 0)
+        self.assertEqual(server.end(), 0)
 
     def test_a_drain_that_takes_too_long_is_cut(self):
         server = self.start_server("--workers", "1", "--drain-seconds", "1")
@@ -127,16 +133,20 @@ class GentleEnd(TimedTest):
         with self.assertRaises(grpc.RpcError):
             for _ in stream:
                 pass
-        self.assertEqual(server.process.wait(10), 0)
+        self.assertEqual(server.end(), 0)
         self.assertGreater(time.monotonic() - begin, 1)
 
     def test_a_second_signal_ends_at_once(self):
-        server = self.start_server("--drain-seconds", "15")
+        server = self.start_server("--drain-seconds", "600")
         self.long_streams(server, 1, 4_000)
         server.terminate()
         self.assertTrue(wait_until(lambda: "draining" in server.log_text()))
         server.terminate()
-        self.assertEqual(server.process.wait(5), 1)
+        self.assertEqual(server.end(), 1)
+
+
+# Of killing a server before it is done, for which a machine that stands still may leave no time.
+ATTEMPTS = 5
 
 
 class KilledServer(TimedTest):
@@ -148,36 +158,42 @@ class KilledServer(TimedTest):
         self.addCleanup(temporary.cleanup)
         self.folder = pathlib.Path(temporary.name)
 
-    def test_a_client_resumes_with_the_restarted_server(self):
-        first = self.start_server("--workers", "1")
-        out, alone = self.folder / "resumed.f32", self.folder / "alone.f32"
-        client = subprocess.Popen([TERRANE, *self.CHOICE, "--server", first.address, "--out", out, "--progress", "json"],
+    def client_of_a_killed_server(self, out):
+        """A client whose server was killed when the first tile had come, and the address of that server.
+        The client is stopped: it would give up after some seconds, which a new server may need to start."""
+        server = self.start_server("--workers", "1")
+        client = subprocess.Popen([TERRANE, *self.CHOICE, "--server", server.address, "--out", out, "--progress", "json"],
                                   stderr=subprocess.PIPE, text=True)
         self.addCleanup(client.stderr.close)
         self.addCleanup(client.kill)
-        begun = json.loads(client.stderr.readline())  # printed with the first tile
-        self.assertLess(max(v for k, v in begun.items() if k not in ("total", "seconds")), begun["total"])
-        first.process.send_signal(signal.SIGKILL)
-        first.process.wait(5)
-        self.assertIsNone(client.poll())
-        second = self.start_server(listen=first.address)
-        self.assertEqual(client.wait(15), 0, client.stderr.read())
-        self.assertTrue(wait_until(second.calls), "the resumed stream is not in the log")
+        client.stderr.readline()  # printed with the first tile
+        client.send_signal(signal.SIGSTOP)
+        server.kill()
+        return client, server.address
+
+    def test_a_client_resumes_with_the_restarted_server(self):
+        out, alone = self.folder / "resumed.f32", self.folder / "alone.f32"
+        for _ in range(ATTEMPTS):
+            client, address = self.client_of_a_killed_server(out)
+            second = self.start_server(listen=address)
+            client.send_signal(signal.SIGCONT)
+            self.assertEqual(client.wait(PATIENCE_SECONDS), 0, client.stderr.read())
+            if wait_until(second.calls, 5):
+                break
         (call,) = second.calls()
         self.assertLess(call["tiles"], 256)  # only what was missing
         subprocess.run([TERRANE, *self.CHOICE, "--local", "--out", alone], check=True, capture_output=True)
         self.assertTrue(filecmp.cmp(out, alone, shallow=False))
 
     def test_a_client_of_a_server_that_stays_away_gives_up_cleanly(self):
-        server = self.start_server("--workers", "1")
         out = self.folder / "never.f32"
-        client = subprocess.Popen([TERRANE, *self.CHOICE, "--server", server.address, "--out", out, "--progress", "json"],
-                                  stderr=subprocess.PIPE, text=True)
-        self.addCleanup(client.stderr.close)
-        self.addCleanup(client.kill)
-        client.stderr.readline()
-        server.process.send_signal(signal.SIGKILL)
-        self.assertEqual(client.wait(19), 4)
+        for _ in range(ATTEMPTS):
+            client, _ = self.client_of_a_killed_server(out)
+            client.send_signal(signal.SIGCONT)
+            if client.wait(PATIENCE_SECONDS) != 0:
+                break
+            out.unlink()
+        self.assertEqual(client.returncode, 4)
         self.assertIn("does not answer", client.stderr.read())
         self.assertEqual(list(self.folder.iterdir()), [])
 
