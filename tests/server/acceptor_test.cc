@@ -38,10 +38,10 @@ Descriptor Connect(int port) {
   return client;
 }
 
-// Waits for the other side to close; false after ten seconds.
+// Waits for the other side to close; false after a minute.
 bool IsClosedByPeer(const Descriptor& client) {
   pollfd wait{client.get(), POLLIN, 0};
-  if (poll(&wait, 1, 10'000) != 1) return false;
+  if (poll(&wait, 1, 60'000) != 1) return false;
   char byte = 0;
   return recv(client.get(), &byte, 1, 0) <= 0;
 }

@@ -89,6 +89,10 @@ class FakeActor : public Actor {
  public:
   FakeTiles& tiles() { return tiles_; }
 
+  absl::StatusOr<v1::Window> CheckTiles(
+      const v1::StreamTilesRequest&) override {
+    return v1::Window();
+  }
   absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
       const v1::StreamTilesRequest& request, std::stop_token stop) override {
     if (tiles_.hold_preparation) {
@@ -154,12 +158,24 @@ class FakeActor : public Actor {
   const RenderMaker renders_{this, Limits()};
 };
 
-// Waits up to ten seconds for a condition that other threads bring about.
+// Waits up to a minute for a condition that other threads bring about.
 template <typename Condition>
 bool Eventually(Condition condition) {
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < 60'000; ++i) {
     if (condition()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+// Has `ask` make calls with longer and longer deadlines until one is being
+// worked on when its deadline passes.
+template <typename Ask>
+bool EventuallyStarts(const FakeTiles& tiles, Ask ask) {
+  for (std::chrono::milliseconds time(200); time < std::chrono::minutes(1);
+       time *= 2) {
+    ask(std::chrono::system_clock::now() + time);
+    if (tiles.started > 0) return true;
   }
   return false;
 }

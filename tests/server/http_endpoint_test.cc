@@ -5,16 +5,20 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
 #include <memory>
-#include <thread>
 #include <vector>
 
+#include "tests/server/fake_actor.h"
 #include "tests/server/http_exchange.h"
 
 namespace terrane::server {
 namespace {
 
 using std::chrono::milliseconds;
+using std::chrono::minutes;
 using ::testing::AllOf;
 using ::testing::AnyOf;
 using ::testing::EndsWith;
@@ -34,6 +38,11 @@ class HttpEndpointTest : public ::testing::Test {
         {"/busy", [] { return HttpReply{.status = 503, .body = "busy\n"}; }},
         {"/large",
          [] { return HttpReply{.body = std::string(32 << 20, 'x')}; }}};
+  }
+  // Of this process.
+  static std::ptrdiff_t OpenFiles() {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
+                         std::filesystem::directory_iterator());
   }
   std::unique_ptr<HttpEndpoint> Start(HttpLimits limits = {}) {
     auto endpoint = HttpEndpoint::Start("127.0.0.1:0", Pages(), limits);
@@ -108,25 +117,23 @@ TEST_F(HttpEndpointTest, SlowRequestsAreCut) {
   const TcpClient silent(endpoint->port());
   const TcpClient trickling(endpoint->port());
   ASSERT_TRUE(trickling.Send("GET /hello HTTP/1.1\r\nX-Slow: "));
-  bool open = true;
-  for (int i = 0; i < 500 && open; ++i) {
-    std::this_thread::sleep_for(milliseconds(20));
-    open = trickling.Send("x");
-  }
-  EXPECT_FALSE(open);
+  EXPECT_TRUE(Eventually([&] { return !trickling.Send("x"); }));
   EXPECT_THAT(silent.ReadToEnd(), IsEmpty());
 }
 
 TEST_F(HttpEndpointTest, SlowReadersAreCut) {
   const auto endpoint = Start({.time = milliseconds(300)});
+  const std::ptrdiff_t files_before = OpenFiles();
   const TcpClient client(endpoint->port());
   ASSERT_TRUE(client.Send("GET /large HTTP/1.1\r\nHost: a\r\n\r\n"));
-  std::this_thread::sleep_for(milliseconds(1000));
+  client.AwaitReply();
+  // The client's end is left, the server's is closed.
+  EXPECT_TRUE(Eventually([&] { return OpenFiles() == files_before + 1; }));
   EXPECT_LT(client.ReadToEnd().size(), 32U << 20);
 }
 
 TEST_F(HttpEndpointTest, SilentConnectionsLockNobodyOut) {
-  const auto endpoint = Start({.connections = 4});
+  const auto endpoint = Start({.connections = 4, .time = minutes(1)});
   std::vector<std::unique_ptr<TcpClient>> silent;
   for (int i = 0; i < 20; ++i) {
     silent.push_back(std::make_unique<TcpClient>(endpoint->port()));

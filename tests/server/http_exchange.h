@@ -36,6 +36,12 @@ class TcpClient {
            static_cast<ssize_t>(bytes.size());
   }
 
+  // Waits for the first byte, which stays to be read, or the end.
+  void AwaitReply() const {
+    char byte = 0;
+    recv(socket_, &byte, 1, MSG_PEEK);
+  }
+
   // Everything until the other side closes.
   std::string ReadToEnd() const {
     std::string all;

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -67,6 +69,32 @@ class LingerTest : public testing::Test {
     std::this_thread::sleep_for(time);
     return !ended_;
   }
+  // How long the end of a call waits for a peer that talks all the time;
+  // nothing when the peer was quiet for a moment, as this machine stood still.
+  std::optional<Linger::Clock::duration> StaysWhileThePeerTalks() {
+    ended_ = false;
+    const auto begin = Linger::Clock::now();
+    auto last = begin;
+    Linger::Clock::duration largest_gap{0};
+    const auto talk = [&] {
+      const auto now = Linger::Clock::now();
+      largest_gap = std::max(largest_gap, now - last);
+      last = now;
+      send(reader_.get(), "x", 1, 0);
+      // Taken, so that there is always room for more.
+      char said[64];
+      while (recv(server_.get(), said, sizeof said, MSG_DONTWAIT) > 0) {
+      }
+    };
+    talk();
+    EndCall(reader_port_);
+    EXPECT_TRUE(Eventually([&] {
+      talk();
+      return ended_.load();
+    }));
+    if (largest_gap > milliseconds(100)) return std::nullopt;
+    return Linger::Clock::now() - begin;
+  }
 
   Descriptor reader_, server_;
   int reader_port_ = 0;
@@ -107,15 +135,13 @@ TEST_F(LingerTest, TheEndWaitsForASlowReader) {
 }
 
 TEST_F(LingerTest, TheEndWaitsWhileThePeerTalksButNotForEver) {
-  Begin(seconds(60));
-  const auto begin = Linger::Clock::now();
-  send(reader_.get(), "x", 1, 0);
-  EndCall(reader_port_);
-  EXPECT_TRUE(Eventually([this] {
-    send(reader_.get(), "x", 1, 0);
-    return ended_.load();
-  }));
-  EXPECT_GE(Linger::Clock::now() - begin, seconds(3));
+  Begin(seconds(600));
+  std::optional<Linger::Clock::duration> waited;
+  for (int attempt = 0; attempt < 20 && !waited.has_value(); ++attempt) {
+    waited = StaysWhileThePeerTalks();
+  }
+  ASSERT_TRUE(waited.has_value());
+  EXPECT_GE(*waited, seconds(3));
 }
 
 TEST_F(LingerTest, AReaderThatHasGoneIsNotWaitedFor) {
@@ -129,10 +155,11 @@ TEST_F(LingerTest, AReaderThatHasGoneIsNotWaitedFor) {
 }
 
 TEST_F(LingerTest, ADrainIsNotHeldUpBeyondItsTime) {
+  const auto until = Linger::Clock::now() + milliseconds(300);
   Begin(milliseconds(300));
   Fill();
   EndCall(reader_port_);
-  EXPECT_TRUE(StaysFor(milliseconds(50)));
+  EXPECT_TRUE(StaysFor(milliseconds(50)) || Linger::Clock::now() >= until);
   EXPECT_TRUE(EndsSoon());
 }
 

@@ -7,7 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "server/service/control_group.h"
+#include "server/actor/control_group.h"
+#include "tests/client/temporary_folder.h"
 
 namespace terrane::server {
 namespace {
@@ -27,18 +28,13 @@ TEST(ControlGroupTest, EveryHierarchyHasItsGroup) {
 
 class MemoryLimitTest : public ::testing::Test {
  protected:
-  ~MemoryLimitTest() override { std::filesystem::remove_all(root_); }
-
   void Write(const std::string& file, const std::string& limit) {
     std::filesystem::create_directories((root_ / file).parent_path());
     std::ofstream(root_ / file) << limit << "\n";
   }
 
-  // A folder for each test: they run at the same time.
-  const std::filesystem::path root_ =
-      std::filesystem::path(::testing::TempDir()) /
-      (std::string("terrane_memory_") +
-       ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  const client::TemporaryFolder folder_;
+  const std::filesystem::path root_ = folder_.File("cgroup");
 };
 
 TEST_F(MemoryLimitTest, NoFilesNoLimit) {
