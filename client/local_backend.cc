@@ -1,6 +1,5 @@
 #include "client/local_backend.h"
 
-#include <algorithm>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -13,6 +12,7 @@
 #include "client/surface_verifier.h"
 #include "client/tile_verifier.h"
 #include "core/terrain/terrain.h"
+#include "server/actor/cpu_quota.h"
 
 namespace terrane::client {
 namespace {
@@ -128,7 +128,7 @@ absl::Status HandOut(const Job& job, MakeTile<Tile> make, int threads,
 }  // namespace
 
 LocalBackend::LocalBackend(int threads)
-    : threads_(std::max(threads, 1)),
+    : threads_(threads > 0 ? threads : server::UsableCpus()),
       actor_(server::MakeActor(server::Limits(), threads_)),
       trees_(&actor_->trees()),
       flowers_(&actor_->flowers()),

@@ -19,7 +19,8 @@ namespace terrane::client {
 
 class LocalBackend : public Backend {
  public:
-  // `threads` make tiles, at least 1.
+  // `threads` make tiles; 0: as many as can run at a time
+  // (server/actor/cpu_quota.h).
   explicit LocalBackend(int threads);
 
   absl::Status StreamTiles(const v1::StreamTilesRequest& request,

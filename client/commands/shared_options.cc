@@ -2,9 +2,7 @@
 
 #include <google/protobuf/util/json_util.h>
 
-#include <algorithm>
 #include <map>
-#include <thread>
 
 #include "client/local_backend.h"
 #include "client/remote_backend.h"
@@ -120,7 +118,8 @@ void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
       ->group("Connection");
   command
       ->add_option("--threads", options->threads,
-                   "Threads of --local (default: every core)")
+                   "Threads of --local (default: one per usable CPU; a "
+                   "cgroup quota counts)")
       ->check(CLI::Range(1, 1024))
       ->group("Connection");
 }
@@ -129,9 +128,7 @@ std::unique_ptr<Backend> MakeBackend(const ConnectionOptions& options) {
   if (!options.local) {
     return std::make_unique<RemoteBackend>(options.server, options.security);
   }
-  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  return std::make_unique<LocalBackend>(
-      options.threads > 0 ? options.threads : std::max(cores, 1));
+  return std::make_unique<LocalBackend>(options.threads);
 }
 
 void AddSpotFileOptions(CLI::App* command, CLI::Option* spots,

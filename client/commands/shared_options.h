@@ -34,7 +34,7 @@ struct ConnectionOptions {
   std::string server = "127.0.0.1:50051";
   ChannelSecurity security;
   bool local = false;
-  int threads = 0;  // 0: every core
+  int threads = 0;  // 0: every usable CPU
 };
 
 void AddConnectionOptions(CLI::App* command, ConnectionOptions* options);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/service/control_group.h"
+#include "server/actor/control_group.h"
 
 namespace terrane::server {
 namespace {

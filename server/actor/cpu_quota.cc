@@ -1,11 +1,11 @@
-#include "server/service/cpu_quota.h"
+#include "server/actor/cpu_quota.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <thread>
 
-#include "server/service/control_group.h"
+#include "server/actor/control_group.h"
 
 namespace terrane::server {
 namespace {

@@ -4,8 +4,8 @@
 // Version 2 has one hierarchy; version 1 has one a controller, in a folder of
 // its name. A limit of a group holds for the groups below it, so whoever looks
 // for the tightest one reads the same file all the way up. Threads: any.
-#ifndef TERRANE_SERVER_SERVICE_CONTROL_GROUP_H_
-#define TERRANE_SERVER_SERVICE_CONTROL_GROUP_H_
+#ifndef TERRANE_SERVER_ACTOR_CONTROL_GROUP_H_
+#define TERRANE_SERVER_ACTOR_CONTROL_GROUP_H_
 
 #include <filesystem>
 #include <string>
@@ -35,4 +35,4 @@ std::vector<std::filesystem::path> FilesUpwards(
 
 }  // namespace terrane::server
 
-#endif  // TERRANE_SERVER_SERVICE_CONTROL_GROUP_H_
+#endif  // TERRANE_SERVER_ACTOR_CONTROL_GROUP_H_

@@ -1,7 +1,8 @@
 // How many threads can really run: the cores this process may use, cut by the
 // CPU quota of its control group (cgroup v2), as containers and systemd set it.
-#ifndef TERRANE_SERVER_SERVICE_CPU_QUOTA_H_
-#define TERRANE_SERVER_SERVICE_CPU_QUOTA_H_
+// So many workers has a server, and so many threads `terrane --local`.
+#ifndef TERRANE_SERVER_ACTOR_CPU_QUOTA_H_
+#define TERRANE_SERVER_ACTOR_CPU_QUOTA_H_
 
 #include <filesystem>
 #include <string>
@@ -19,4 +20,4 @@ int CpusWithinQuota(int cores, const std::string& self_cgroup,
 
 }  // namespace terrane::server
 
-#endif  // TERRANE_SERVER_SERVICE_CPU_QUOTA_H_
+#endif  // TERRANE_SERVER_ACTOR_CPU_QUOTA_H_

@@ -1,4 +1,4 @@
-#include "server/service/control_group.h"
+#include "server/actor/control_group.h"
 
 #include <fstream>
 #include <sstream>
