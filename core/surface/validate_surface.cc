@@ -16,6 +16,9 @@ constexpr Range kPositions{-1e9, 1e9};
 constexpr Range kWeights{-1e6, 1e6};
 constexpr Range kLearningRates{0, 1e6, true, false};
 constexpr int kMaxIterations = 1'000'000;
+// The largest net has so many.
+constexpr std::size_t kMostPoints =
+    std::size_t{Basis::kMaxCount} * Basis::kMaxCount;
 
 void CheckPoint(const Path& path, const Point3& point, FieldChecks* checks) {
   checks->Number(path.Field("x"), point.x, kPositions);
@@ -23,11 +26,13 @@ void CheckPoint(const Path& path, const Point3& point, FieldChecks* checks) {
   checks->Number(path.Field("z"), point.z, kPositions);
 }
 
-void CheckDegree(const Path& path, const PointNet& net, FieldChecks* checks) {
-  if (!HasDegree(net.basis) ||
-      !checks->Integer(path, net.degree, 1, Basis::kMaxBSplineDegree)) {
-    return;
-  }
+// `sides_good`: the net's columns and rows are in their ranges.
+void CheckDegree(const Path& path, const PointNet& net, bool sides_good,
+                 FieldChecks* checks) {
+  if (!HasDegree(net.basis)) return;
+  const bool good =
+      checks->Integer(path, net.degree, 1, Basis::kMaxBSplineDegree);
+  if (!good || !sides_good) return;
   const int fewest = std::min(net.columns, net.rows);
   if (net.degree >= fewest) {
     checks->Violate(path, "must be below the number of control points, " +
@@ -36,26 +41,29 @@ void CheckDegree(const Path& path, const PointNet& net, FieldChecks* checks) {
   }
 }
 
-// Whether the shape of the net, the points apart, can be relied on.
+// Whether the net's columns and rows are in their ranges.
 bool CheckNet(const Path& path, const PointNet& net, FieldChecks* checks) {
   const bool columns_good =
       checks->Integer(path.Field("columns"), net.columns, 2, Basis::kMaxCount);
   const bool rows_good =
       checks->Integer(path.Field("rows"), net.rows, 2, Basis::kMaxCount);
-  if (!columns_good || !rows_good) return false;
-  CheckDegree(path.Field("degree"), net, checks);
-  const std::size_t expected = static_cast<std::size_t>(net.columns) *
-                               static_cast<std::size_t>(net.rows);
-  if (net.points.size() != expected) {
-    checks->Violate(path.Field("points"),
-                    "must have rows * columns = " + std::to_string(expected) +
-                        " elements, got " + std::to_string(net.points.size()));
-    return false;
+  const bool sides_good = columns_good && rows_good;
+  CheckDegree(path.Field("degree"), net, sides_good, checks);
+  if (sides_good) {
+    const std::size_t expected = static_cast<std::size_t>(net.columns) *
+                                 static_cast<std::size_t>(net.rows);
+    if (net.points.size() != expected) {
+      checks->Violate(path.Field("points"),
+                      "must have rows * columns = " + std::to_string(expected) +
+                          " elements, got " +
+                          std::to_string(net.points.size()));
+    }
   }
-  for (std::size_t k = 0; k < expected; ++k) {
+  const std::size_t count = std::min(net.points.size(), kMostPoints);
+  for (std::size_t k = 0; k < count; ++k) {
     CheckPoint(path.Element("points", k), net.points[k], checks);
   }
-  return true;
+  return sides_good;
 }
 
 // The weights of a network: w_ij, w_i (rows = 0) or w_j (columns = 0).
@@ -172,17 +180,17 @@ void ValidateSurface(const SurfaceSpec& spec, const std::string& prefix,
   FieldChecks checks(violations);
   const std::size_t before = violations->total();
   const PointNet& net = spec.net;
-  const bool shape_good = CheckNet(root.Field("net"), net, &checks);
-  const bool net_good = shape_good && violations->total() == before;
-  if (shape_good) {
-    const bool products = spec.method == SurfaceMethod::kProducts;
-    CheckNetwork(root.Field("network"), spec.network,
-                 {net.columns, products ? net.rows : 0}, spec.carry_over,
-                 &checks);
-    if (HasNetworkU(spec.method)) {
-      CheckNetwork(root.Field("network_u"), spec.network_u, {0, net.rows},
-                   spec.carry_over, &checks);
-    }
+  const bool sides_good = CheckNet(root.Field("net"), net, &checks);
+  const bool net_good = sides_good && violations->total() == before;
+  // What the largest net has not, no net has.
+  const int columns = sides_good ? net.columns : Basis::kMaxCount;
+  const int rows = sides_good ? net.rows : Basis::kMaxCount;
+  const bool products = spec.method == SurfaceMethod::kProducts;
+  CheckNetwork(root.Field("network"), spec.network,
+               {columns, products ? rows : 0}, spec.carry_over, &checks);
+  if (HasNetworkU(spec.method)) {
+    CheckNetwork(root.Field("network_u"), spec.network_u, {0, rows},
+                 spec.carry_over, &checks);
   }
   if (spec.training.has_value()) {
     CheckTraining(root.Field("training"), spec, net_good, &checks);

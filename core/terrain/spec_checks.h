@@ -59,7 +59,7 @@ void ValidateMacro(const Path& path, const MacroSpec& macro,
 void ValidateSpots(const Path& root, const TerrainSpec& spec,
                    SpecChecks* checks);
 // validate_constraints.cc: a point inside the domain, if there is one.
-void ValidatePlace(const Path& path, const Point2& point,
+bool ValidatePlace(const Path& path, const Point2& point,
                    const TerrainSpec& spec, SpecChecks* checks);
 // validate_constraints.cc: `discrete_constraints`, `continuous_constraints`.
 void ValidateDiscreteConstraints(const Path& root, const TerrainSpec& spec,

@@ -419,15 +419,15 @@ bool ConditionsDiscrete(const TerrainSpec& spec) {
   return spec.source != FractalSource::kMidpoint || !spec.spots.empty();
 }
 
+const Raster* RefinedRaster(const TerrainSpec& spec) {
+  if (!spec.refinement || spec.macro.parts.size() != 1) return nullptr;
+  const auto* shape = std::get_if<RasterShape>(&spec.macro.parts.front().shape);
+  return shape == nullptr ? nullptr : shape->raster.get();
+}
+
 Frame FrameOf(const TerrainSpec& spec) {
-  if (spec.refinement && spec.macro.parts.size() == 1) {
-    const auto* shape =
-        std::get_if<RasterShape>(&spec.macro.parts.front().shape);
-    if (shape != nullptr && shape->raster != nullptr) {
-      return shape->raster->frame;
-    }
-  }
-  return spec.frame.value_or(Frame{});
+  const Raster* const raster = RefinedRaster(spec);
+  return raster != nullptr ? raster->frame : spec.frame.value_or(Frame{});
 }
 
 int DefaultSpotLevel(const SpotHeights& spots, const Frame& frame,

@@ -62,6 +62,9 @@ struct SnappedSpots {
 // asked for, or the default for every source but MIDPOINT and beside spots.
 bool ConditionsDiscrete(const TerrainSpec& spec);
 
+// The raster that a spec's refinement refines; null without one.
+const Raster* RefinedRaster(const TerrainSpec& spec);
+
 // The spec's frame, or that of the raster it refines.
 Frame FrameOf(const TerrainSpec& spec);
 

@@ -55,17 +55,20 @@ void ValidateSource(const Path& path, const ContinuousConstraint& constraint,
 
 }  // namespace
 
-void ValidatePlace(const Path& path, const Point2& point,
+bool ValidatePlace(const Path& path, const Point2& point,
                    const TerrainSpec& spec, SpecChecks* checks) {
-  if (!checks->Coordinates(path, point) || !spec.domain.has_value()) return;
+  if (!checks->Coordinates(path, point)) return false;
+  if (!spec.domain.has_value()) return true;
   const Frame frame = spec.frame.value_or(Frame{});
-  checks->Number(
+  bool good = checks->Number(
       path.Field("x"), point.x,
       DomainRange(frame.origin_x, frame.spacing_x, spec.domain->cells_x));
-  if (checks->dimensions() == 1) return;
-  checks->Number(
-      path.Field("y"), point.y,
-      DomainRange(frame.origin_y, frame.spacing_y, spec.domain->cells_y));
+  if (checks->dimensions() == 2) {
+    good &= checks->Number(
+        path.Field("y"), point.y,
+        DomainRange(frame.origin_y, frame.spacing_y, spec.domain->cells_y));
+  }
+  return good;
 }
 
 void ValidateDiscreteConstraints(const Path& root, const TerrainSpec& spec,

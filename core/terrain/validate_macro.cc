@@ -9,6 +9,9 @@ namespace terrane::core {
 namespace {
 
 constexpr Range kSlopes{-1e6, 1e6};
+// The largest control net has so many.
+constexpr std::size_t kMostNetHeights =
+    std::size_t{Basis::kMaxCount} * Basis::kMaxCount;
 
 // Checks one shape; `path` is the part's.
 class ShapeValidator {
@@ -71,12 +74,10 @@ class ShapeValidator {
     const bool rows_good =
         checks_->Integer(path.Field("rows"), net.rows, plane ? 2 : 1,
                          plane ? Basis::kMaxCount : 1);
-    if (columns_good && rows_good) {
-      CheckDegree(path, net);
-      CheckNetHeights(path, net);
-    }
+    CheckDegree(path, net, columns_good && rows_good);
+    CheckNetHeights(path, net, columns_good && rows_good);
     const bool corners_good =
-        checks_->Coordinates(path.Field("minimum"), net.minimum) &&
+        checks_->Coordinates(path.Field("minimum"), net.minimum) &
         checks_->Coordinates(path.Field("maximum"), net.maximum);
     if (!corners_good) return;
     const Path maximum = path.Field("maximum");
@@ -123,8 +124,8 @@ class ShapeValidator {
     const std::size_t count = profile.heights.size();
     checks_->Count(path.Field("heights"), count, 2,
                    static_cast<std::size_t>(checks_->limits().max_vertices));
-    if (!checks_->SpendVertices(path.Field("heights"), count)) return;
-    for (std::size_t i = 0; i < count; ++i) {
+    const bool few = checks_->SpendVertices(path.Field("heights"), count);
+    for (std::size_t i = 0; few && i < count; ++i) {
       checks_->Number(path.Element("heights", i), profile.heights[i], kHeights);
     }
     if (profile.x.empty()) {
@@ -140,12 +141,13 @@ class ShapeValidator {
   }
 
  private:
-  void CheckDegree(const Path& path, const ControlNet& net) const {
+  // `sides_good`: the net's columns and rows are in their ranges.
+  void CheckDegree(const Path& path, const ControlNet& net,
+                   bool sides_good) const {
     if (!HasDegree(net.basis)) return;
-    if (!checks_->Integer(path.Field("degree"), net.degree, 1,
-                          Basis::kMaxBSplineDegree)) {
-      return;
-    }
+    const bool good = checks_->Integer(path.Field("degree"), net.degree, 1,
+                                       Basis::kMaxBSplineDegree);
+    if (!good || !sides_good) return;
     const int fewest = checks_->dimensions() == 2
                            ? std::min(net.columns, net.rows)
                            : net.columns;
@@ -157,17 +159,20 @@ class ShapeValidator {
     }
   }
 
-  void CheckNetHeights(const Path& path, const ControlNet& net) const {
-    const std::size_t expected = static_cast<std::size_t>(net.columns) *
-                                 static_cast<std::size_t>(net.rows);
-    if (net.heights.size() != expected) {
-      checks_->Violate(
-          path.Field("heights"),
-          "must have rows * columns = " + std::to_string(expected) +
-              " elements, got " + std::to_string(net.heights.size()));
-      return;
+  void CheckNetHeights(const Path& path, const ControlNet& net,
+                       bool sides_good) const {
+    if (sides_good) {
+      const std::size_t expected = static_cast<std::size_t>(net.columns) *
+                                   static_cast<std::size_t>(net.rows);
+      if (net.heights.size() != expected) {
+        checks_->Violate(
+            path.Field("heights"),
+            "must have rows * columns = " + std::to_string(expected) +
+                " elements, got " + std::to_string(net.heights.size()));
+      }
     }
-    for (std::size_t i = 0; i < expected; ++i) {
+    const std::size_t count = std::min(net.heights.size(), kMostNetHeights);
+    for (std::size_t i = 0; i < count; ++i) {
       checks_->Number(path.Element("heights", i), net.heights[i], kHeights);
     }
   }
@@ -178,9 +183,11 @@ class ShapeValidator {
                        "must have as many elements as heights, " +
                            std::to_string(profile.heights.size()) + ", got " +
                            std::to_string(profile.x.size()));
-      return;
     }
-    for (std::size_t i = 0; i < profile.x.size(); ++i) {
+    const std::size_t count =
+        std::min(profile.x.size(),
+                 static_cast<std::size_t>(checks_->limits().max_vertices));
+    for (std::size_t i = 0; i < count; ++i) {
       const Path x = path.Element("x", i);
       if (!checks_->Number(x, profile.x[i], kCoordinates)) continue;
       if (i > 0 && profile.x[i] <= profile.x[i - 1]) {

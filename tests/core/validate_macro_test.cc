@@ -182,5 +182,47 @@ INSTANTIATE_TEST_SUITE_P(
              "must be BILINEAR or CATMULL_ROM, got BSPLINE"}),
     RuleName);
 
+// A wrong field hides none of the others.
+TEST(MacroRules, NoFieldHidesAnother) {
+  TerrainSpec spec;
+  ControlNet net = FlatNet(65, 0);
+  net.degree = 6;
+  net.heights = {0, kNan, 0};
+  net.minimum = {kNan, 0};
+  net.maximum = {1, kInfinity};
+  AddPart(&spec, net);
+  net = FlatNet(4, 4);
+  net.heights = {kNan};
+  AddPart(&spec, net);
+  AddPart(&spec, Profile{.x = {kNan, 1, 0},
+                         .heights = {2e9},
+                         .interpolation = Interpolation::kCatmullRom});
+  EXPECT_THAT(FieldsOf(spec),
+              ::testing::ElementsAre("macro.parts[0].control_net.columns",
+                                     "macro.parts[0].control_net.rows",
+                                     "macro.parts[0].control_net.degree",
+                                     "macro.parts[0].control_net.heights[1]",
+                                     "macro.parts[0].control_net.minimum.x",
+                                     "macro.parts[0].control_net.maximum.y",
+                                     "macro.parts[1].control_net.heights",
+                                     "macro.parts[1].control_net.heights[0]",
+                                     "macro.parts[2].profile.heights",
+                                     "macro.parts[2].profile.heights[0]",
+                                     "macro.parts[2].profile.x",
+                                     "macro.parts[2].profile.x[0]",
+                                     "macro.parts[2].profile.x[2]",
+                                     "macro.parts[2].profile.interpolation"));
+}
+
+// A list that is too long is looked at no further than the longest may be.
+TEST(MacroRules, HeightsBeyondTheLargestNetAreNotLookedAt) {
+  TerrainSpec spec;
+  ControlNet net = FlatNet(64, 64);
+  net.heights.resize(100'000, kNan);
+  AddPart(&spec, net);
+  EXPECT_THAT(FieldsOf(spec),
+              ::testing::ElementsAre("macro.parts[0].control_net.heights"));
+}
+
 }  // namespace
 }  // namespace terrane::core

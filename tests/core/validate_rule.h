@@ -38,6 +38,13 @@ inline std::vector<Violation> Validate(const TerrainSpec& spec,
   return violations.kept();
 }
 
+// The fields that are named, in their order.
+inline std::vector<std::string> FieldsOf(const TerrainSpec& spec) {
+  std::vector<std::string> fields;
+  for (const Violation& one : Validate(spec)) fields.push_back(one.field);
+  return fields;
+}
+
 // Breaking the rule makes one violation: of its field, with its description.
 inline void ExpectViolation(const Rule& rule) {
   using ::testing::Field;

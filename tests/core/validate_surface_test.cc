@@ -149,6 +149,28 @@ TEST(ValidateSurfaceTest, EveryViolationIsCollected) {
   EXPECT_EQ(violations.kept()[0].field, "recipe.net.points[0].x");
 }
 
+// A wrong field hides none of the others.
+TEST(ValidateSurfaceTest, NoFieldHidesAnother) {
+  SurfaceSpec spec;
+  spec.net = HillNet();
+  spec.net.basis = SplineBasis::kBSplineClamped;
+  spec.net.columns = 1;
+  spec.net.degree = 6;
+  spec.net.points[2].z = std::nan("");
+  spec.network.weights = {{.i = 64, .random = std::nan("")}};
+  spec.network.desired = 1e9;
+  spec.training = Training{-1, -1};
+  Violations violations;
+  ValidateSurface(spec, "", &violations);
+  std::vector<std::string> fields;
+  for (const Violation& one : violations.kept()) fields.push_back(one.field);
+  EXPECT_THAT(fields, ::testing::ElementsAre(
+                          "net.columns", "net.degree", "net.points[2].z",
+                          "network.weights[0].i", "network.weights[0].random",
+                          "network.desired", "training.iterations",
+                          "training.learning_rate"));
+}
+
 std::string HeightFieldError(const SurfaceSpec& spec) {
   Violations violations;
   ValidateHeightField(spec, "", &violations);

@@ -359,6 +359,38 @@ TEST(ValidateSpecTest, TellsEverythingInOnePassInTheOrderOfTheFields) {
                           "recipe.continuous_constraints[0].source"));
 }
 
+TEST(ValidateSpecTest, NoFieldOfSpotsHidesAnother) {
+  TerrainSpec spec;
+  spec.domain = Domain{8, 8};
+  spec.spots.level = 31;
+  spec.spots.points = {{.height = kNan}};
+  spec.spots.table = std::make_shared<std::vector<SpotHeight>>(
+      std::vector<SpotHeight>{{.point = {9, 0}}});
+  spec.spots.lines = {{.vertices = {{kNan, 1}, {9, 1}},
+                       .heights = {1, kNan, 2},
+                       .spacing = -1}};
+  EXPECT_THAT(
+      FieldsOf(spec),
+      ElementsAre("spots.level", "spots.points[0].height", "spots.table[0].x",
+                  "spots.lines[0].vertices[0].x",
+                  "spots.lines[0].vertices[1].x", "spots.lines[0].spacing",
+                  "spots.lines[0].heights", "spots.lines[0].heights[1]"));
+}
+
+TEST(ValidateSpecTest, SamplesOfLinesAreCountedOnTheRefinedLattice) {
+  TerrainSpec spec;
+  spec.refinement.emplace();
+  spec.spots.level = 0;
+  spec.spots.lines = {{.vertices = {{0, 0}, {500'000, 0}}}};
+  AddPart(&spec, RasterShape{MakeRaster(9, 8)});  // 10 apart
+  EXPECT_THAT(FieldsOf(spec), IsEmpty());
+  spec.spots.level = 3;
+  EXPECT_THAT(FieldsOf(spec), ElementsAre("spots"));
+  // Without the raster nothing is known of its lattice.
+  spec.macro.parts = {{MacroCombine::kAdd, RasterShape{}}};
+  EXPECT_THAT(FieldsOf(spec), ElementsAre("macro.parts[0].raster.raster_id"));
+}
+
 TEST(ValidateSpecTest, CountsAllVerticesOfARecipe) {
   SpecLimits limits;
   limits.max_vertices = 5;
