@@ -4,14 +4,16 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <variant>
 
 #include "core/terrain/spec_checks.h"
+#include "core/terrain/spot_heights.h"
+#include "server/convert/axis_checks.h"
 #include "server/convert/enum_table.h"
 
 namespace terrane::server {
 namespace {
 
+using core::FieldChecks;
 using core::kMaxIndex;
 using core::NumberText;
 using core::Path;
@@ -19,25 +21,12 @@ using core::Violations;
 
 constexpr int kDefaultTileSize = 256;
 
-// Adds a violation when `value` is not in [low, high].
-bool CheckInteger(const Path& path, std::int64_t value, std::int64_t low,
-                  std::int64_t high, Violations* violations) {
-  if (value >= low && value <= high) return true;
-  violations->Add(path.Text(), "must be in [" + std::to_string(low) + ", " +
-                                   std::to_string(high) + "], got " +
-                                   std::to_string(value));
-  return false;
-}
-
 // The domain that requests are checked against; a refinement's is its model's
 // posts even before Terrain::Create says so.
 std::optional<core::Domain> DomainOf(const core::TerrainSpec& spec) {
-  if (spec.domain.has_value() || !spec.refinement.has_value()) {
-    return spec.domain;
-  }
-  const auto& raster =
-      *std::get<core::RasterShape>(spec.macro.parts.front().shape).raster;
-  return core::Domain{raster.width - 1, raster.height - 1};
+  const core::Raster* const raster = core::RefinedRaster(spec);
+  if (spec.domain.has_value() || raster == nullptr) return spec.domain;
+  return core::Domain{raster->width - 1, raster->height - 1};
 }
 
 // Samples along an axis of `cells` level-0 cells: at most 2^60 + 1.
@@ -62,28 +51,9 @@ std::optional<Extent> ExtentOf(const core::TerrainSpec* spec, int level,
                 line ? 1 : AxisSamples(domain->cells_y, level, sampling)};
 }
 
-// An axis of samples, or of whole tiles: [low, end).
-struct Axis {
-  std::int64_t low = 0;
-  std::int64_t end = 0;
-};
-
 Axis SampleAxis(std::optional<std::int64_t> extent) {
   if (extent.has_value()) return {0, std::min(*extent, kMaxIndex)};
   return {-kMaxIndex, kMaxIndex};
-}
-
-// Checks [first, first + count) on an axis.
-bool CheckOnAxis(const Axis& axis, const Path& first_path, std::int64_t first,
-                 const Path& count_path, std::int64_t count,
-                 Violations* violations) {
-  const bool first_good =
-      CheckInteger(first_path, first, axis.low, axis.end - 1, violations);
-  // A first that is wrong hides nothing of the count that would be wrong
-  // whatever it was.
-  const std::int64_t begin = first_good ? first : axis.low;
-  return CheckInteger(count_path, count, 1, axis.end - begin, violations) &&
-         first_good;
 }
 
 // One StreamTiles request being checked.
@@ -96,7 +66,8 @@ class TilePlanner {
         spec_(spec),
         limits_(limits),
         root_(root),
-        violations_(violations) {}
+        violations_(violations),
+        checks_(violations) {}
 
   TilePlan Plan();
 
@@ -120,14 +91,15 @@ class TilePlanner {
   const Limits& limits_;
   const Path& root_;
   Violations* const violations_;
+  FieldChecks checks_;
   std::optional<Extent> extent_;
   TilePlan plan_;
 };
 
 void TilePlanner::PlanSamples() {
   plan_.level = request_.level();
-  const bool level_good = CheckInteger(root_.Field("level"), plan_.level, 0,
-                                       limits_.max_level, violations_);
+  const bool level_good =
+      checks_.Integer(root_.Field("level"), plan_.level, 0, limits_.max_level);
   plan_.sampling = ReadEnum(kSamplings, request_.sampling(),
                             root_.Field("sampling"), violations_);
   plan_.tile_size =
@@ -135,8 +107,8 @@ void TilePlanner::PlanSamples() {
   const bool shares_edges =
       request_.has_tiles() && plan_.sampling == core::Sampling::kPoint;
   const int least_size = shares_edges ? 2 : 1;
-  if (!CheckInteger(root_.Field("tile_size"), plan_.tile_size, least_size,
-                    limits_.max_tile_size, violations_)) {
+  if (!checks_.Integer(root_.Field("tile_size"), plan_.tile_size, least_size,
+                       limits_.max_tile_size)) {
     // What is wrong with the tiles now is wrong whatever their size.
     plan_.tile_size = least_size;
   }
@@ -167,10 +139,10 @@ bool TilePlanner::PlanWindow(const v1::Window& window) {
   plan_.whole = {window.x(), window.y(), window.width(), window.height()};
   const bool columns_good =
       CheckOnAxis(SamplesX(), path.Field("x"), window.x(), path.Field("width"),
-                  window.width(), violations_);
+                  window.width(), &checks_);
   const bool rows_good =
       CheckOnAxis(SamplesY(), path.Field("y"), window.y(), path.Field("height"),
-                  window.height(), violations_);
+                  window.height(), &checks_);
   if (!columns_good || !rows_good) return false;
   CutWindow();
   return CheckTotals(path);
@@ -182,16 +154,16 @@ bool TilePlanner::PlanTileRange(const v1::TileRange& tiles) {
   const Axis columns = TilesOn(SamplesX());
   const Axis rows = TilesOn(SamplesY());
   if (columns.end == 0 || rows.end == 0) {  // a domain smaller than a tile
-    CheckInteger(root_.Field("tile_size"), plan_.tile_size, 1 + shared,
-                 std::min(SamplesX().end, SamplesY().end), violations_);
+    checks_.Integer(root_.Field("tile_size"), plan_.tile_size, 1 + shared,
+                    std::min(SamplesX().end, SamplesY().end));
     return false;
   }
   const bool columns_good =
       CheckOnAxis(columns, path.Field("x"), tiles.x(), path.Field("columns"),
-                  tiles.columns(), violations_);
+                  tiles.columns(), &checks_);
   const bool rows_good =
       CheckOnAxis(rows, path.Field("y"), tiles.y(), path.Field("rows"),
-                  tiles.rows(), violations_);
+                  tiles.rows(), &checks_);
   if (!columns_good || !rows_good) return false;
   plan_.tile_x = tiles.x();
   plan_.tile_y = tiles.y();
@@ -265,8 +237,8 @@ TilePlan TilePlanner::Plan() {
   PlanSamples();
   const std::int64_t most_first_tile =
       PlanExtent() ? plan_.total() : std::numeric_limits<std::int64_t>::max();
-  CheckInteger(root_.Field("first_tile"), plan_.first_tile, 0, most_first_tile,
-               violations_);
+  checks_.Integer(root_.Field("first_tile"), plan_.first_tile, 0,
+                  most_first_tile);
   PlanEncoding(request_.encoding(),
                request_.has_range() ? &request_.range() : nullptr, root_,
                violations_, &plan_);
@@ -289,12 +261,11 @@ void PlanEncoding(v1::HeightEncoding encoding, const v1::HeightRange* range,
       violations->Add(root.Field("encoding").Text(),
                       "must be a value that the API knows, got " +
                           std::to_string(encoding));
-      return;
   }
   if (range == nullptr) return;
   const Path path = root.Field("range");
   const EncodingRange asked{range->minimum(), range->maximum()};
-  core::FieldChecks checks(violations);
+  FieldChecks checks(violations);
   constexpr core::Range kRangeEnds{-1e12, 1e12};
   const bool minimum_good =
       checks.Number(path.Field("minimum"), asked.minimum, kRangeEnds);
@@ -349,14 +320,15 @@ core::TileRequest PlanProfile(const v1::GetProfileRequest& request,
                               const Limits& limits, const std::string& prefix,
                               core::Violations* violations) {
   const Path root(&prefix);
+  FieldChecks checks(violations);
   core::TileRequest plan;
   if (spec != nullptr && spec->dimensions != 1) {
     violations->Add(root.Field("terrain").Text(),
                     "must have 1 dimension, got 2");
   }
   plan.level = request.level();
-  const bool level_good = CheckInteger(root.Field("level"), plan.level, 0,
-                                       limits.max_level, violations);
+  const bool level_good =
+      checks.Integer(root.Field("level"), plan.level, 0, limits.max_level);
   plan.sampling = ReadEnum(kSamplings, request.sampling(),
                            root.Field("sampling"), violations);
   plan.window = {request.first(), 0, request.count(), 1};
@@ -373,11 +345,11 @@ core::TileRequest PlanProfile(const v1::GetProfileRequest& request,
       return plan;
     }
   }
-  const bool count_good = CheckInteger(count, plan.window.width, 1,
-                                       limits.max_profile_samples, violations);
+  const bool count_good =
+      checks.Integer(count, plan.window.width, 1, limits.max_profile_samples);
   CheckOnAxis(SampleAxis(extent ? std::optional(extent->width) : std::nullopt),
               root.Field("first"), plan.window.x, count,
-              count_good ? plan.window.width : 1, violations);
+              count_good ? plan.window.width : 1, &checks);
   return plan;
 }
 
@@ -391,8 +363,8 @@ std::vector<core::Point2> PlanHeights(const v1::GetHeightsRequest& request,
     violations->Add(root.Field("terrain").Text(),
                     "must have 2 dimensions, got 1");
   }
-  CheckInteger(root.Field("level"), request.level(), 0, limits.max_level,
-               violations);
+  core::SpecChecks checks(limits.recipe, 2, violations);
+  checks.Integer(root.Field("level"), request.level(), 0, limits.max_level);
   std::vector<core::Point2> points;
   if (request.points_size() > limits.max_points) {
     violations->Add(root.Field("points").Text(),
@@ -401,7 +373,6 @@ std::vector<core::Point2> PlanHeights(const v1::GetHeightsRequest& request,
                         std::to_string(request.points_size()));
     return points;
   }
-  core::SpecChecks checks(limits.recipe, 2, violations);
   points.reserve(static_cast<std::size_t>(request.points_size()));
   for (const v1::Point& point : request.points()) {
     const core::Point2 place{point.x(), point.y()};

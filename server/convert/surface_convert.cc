@@ -1,10 +1,13 @@
 #include "server/convert/surface_convert.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "core/base/field_checks.h"
 #include "core/surface/validate_surface.h"
+#include "server/convert/axis_checks.h"
 #include "server/convert/enum_table.h"
 
 namespace terrane::server {
@@ -16,6 +19,12 @@ using core::Path;
 // Every net that is not too large has at most so many points.
 constexpr int kMaxPoints = core::Basis::kMaxCount * core::Basis::kMaxCount;
 constexpr int kDefaultTileSize = 256;
+
+// To itself: read for the check alone.
+constexpr EnumTable<v1::SurfaceOutput, v1::SurfaceOutput, 2> kOutputs{{
+    {v1::SURFACE_OUTPUT_MESH, v1::SURFACE_OUTPUT_MESH},
+    {v1::SURFACE_OUTPUT_HEIGHTS, v1::SURFACE_OUTPUT_HEIGHTS},
+}};
 
 core::Point3 ReadVector(const v1::Vector3& vector) {
   return {vector.x(), vector.y(), vector.z()};
@@ -97,52 +106,53 @@ class SurfacePlanner {
         checks_(violations) {}
 
   SurfacePlan Plan(const std::string& recipe_prefix) {
-    plan_.grid = {request_.columns(), request_.rows()};
     plan_.uvs = request_.uvs();
     plan_.share_edges = request_.share_edges();
-    const bool grid_good = CheckGrid();
+    const bool grid_good = PlanGrid();
     const bool size_good = PlanTileSize();
     PlanOutput(recipe_prefix);
+    const bool window_good = PlanWindow(grid_good) && CutWindow();
     plan_.tiles.first_tile = request_.first_tile();
-    if (grid_good && size_good && PlanWindow()) CutWindow();
+    checks_.Integer(root_.Field("first_tile"), plan_.tiles.first_tile, 0,
+                    size_good && window_good
+                        ? plan_.tiles.total()
+                        : std::numeric_limits<std::int64_t>::max());
     return plan_;
   }
 
  private:
-  bool CheckGrid() {
+  bool PlanGrid() {
+    plan_.grid = {request_.columns(), request_.rows()};
     const bool columns_good = checks_.Integer(
         root_.Field("columns"), plan_.grid.columns, 2, core::kMaxGridSide);
-    return checks_.Integer(root_.Field("rows"), plan_.grid.rows, 2,
-                           core::kMaxGridSide) &&
-           columns_good;
+    const bool rows_good = checks_.Integer(root_.Field("rows"), plan_.grid.rows,
+                                           2, core::kMaxGridSide);
+    // What is not on the largest grid is on none.
+    if (!columns_good) plan_.grid.columns = core::kMaxGridSide;
+    if (!rows_good) plan_.grid.rows = core::kMaxGridSide;
+    return columns_good && rows_good;
   }
 
   bool PlanTileSize() {
     TilePlan& tiles = plan_.tiles;
     tiles.tile_size =
         request_.tile_size() == 0 ? kDefaultTileSize : request_.tile_size();
+    const int least = plan_.share_edges ? 2 : 1;
+    const bool good = checks_.Integer(root_.Field("tile_size"), tiles.tile_size,
+                                      least, limits_.max_tile_size);
+    // The largest tiles share the fewest samples.
+    if (!good) tiles.tile_size = std::max(least, limits_.max_tile_size);
     tiles.stride = tiles.tile_size - (plan_.share_edges ? 1 : 0);
-    return checks_.Integer(root_.Field("tile_size"), tiles.tile_size,
-                           plan_.share_edges ? 2 : 1, limits_.max_tile_size);
+    return good;
   }
 
   void PlanOutput(const std::string& recipe_prefix) {
-    switch (request_.output()) {
-      case v1::SURFACE_OUTPUT_UNSPECIFIED:
-      case v1::SURFACE_OUTPUT_MESH:
-        return;
-      case v1::SURFACE_OUTPUT_HEIGHTS:
-        plan_.heights = true;
-        break;
-      default:
-        violations_->Add(root_.Field("output").Text(),
-                         "must be a value that the API knows, got " +
-                             std::to_string(request_.output()));
-        return;
-    }
+    plan_.heights = ReadEnum(kOutputs, request_.output(), root_.Field("output"),
+                             violations_) == v1::SURFACE_OUTPUT_HEIGHTS;
     PlanEncoding(request_.encoding(),
                  request_.has_range() ? &request_.range() : nullptr, root_,
                  violations_, &plan_.tiles);
+    if (!plan_.heights) return;
     if (plan_.tiles.encoding == v1::HEIGHT_ENCODING_UINT16_LE &&
         !request_.has_range()) {
       violations_->Add(root_.Field("range").Text(),
@@ -154,26 +164,22 @@ class SurfacePlanner {
     }
   }
 
-  bool PlanWindow() {
+  bool PlanWindow(bool grid_good) {
     core::Window& whole = plan_.tiles.whole;
     if (!request_.has_window()) {
       whole = {0, 0, plan_.grid.columns, plan_.grid.rows};
-      return true;
+      return grid_good;
     }
     const v1::Window& window = request_.window();
     whole = {window.x(), window.y(), window.width(), window.height()};
     const Path path = root_.Field("window");
-    return CheckAxis(path.Field("x"), whole.x, path.Field("width"), whole.width,
-                     plan_.grid.columns) &&
-           CheckAxis(path.Field("y"), whole.y, path.Field("height"),
-                     whole.height, plan_.grid.rows);
-  }
-
-  bool CheckAxis(const Path& first_path, std::int64_t first,
-                 const Path& count_path, std::int64_t count,
-                 std::int64_t size) {
-    return checks_.Integer(first_path, first, 0, size - 1) &&
-           checks_.Integer(count_path, count, 1, size - first);
+    const bool columns_good =
+        CheckOnAxis({0, plan_.grid.columns}, path.Field("x"), whole.x,
+                    path.Field("width"), whole.width, &checks_);
+    const bool rows_good =
+        CheckOnAxis({0, plan_.grid.rows}, path.Field("y"), whole.y,
+                    path.Field("height"), whole.height, &checks_);
+    return columns_good && rows_good;
   }
 
   // Tiles that cover `count` samples, the last of which has one at least that
@@ -184,7 +190,8 @@ class SurfacePlanner {
         1, (count - shared + tiles.stride - 1) / tiles.stride);
   }
 
-  void CutWindow() {
+  // Whether the tiles are not too many.
+  bool CutWindow() {
     TilePlan& tiles = plan_.tiles;
     tiles.columns = TilesAcross(tiles.whole.width, tiles);
     tiles.rows = TilesAcross(tiles.whole.height, tiles);
@@ -195,15 +202,12 @@ class SurfacePlanner {
          (tiles.columns - 1) * (tiles.tile_size - tiles.stride)) *
         (tiles.whole.height +
          (tiles.rows - 1) * (tiles.tile_size - tiles.stride));
-    if (samples > limits_.max_stream_samples) {
-      violations_->Add(root_.Field("window").Text(),
-                       "must have at most " +
-                           std::to_string(limits_.max_stream_samples) +
-                           " samples, got " + std::to_string(samples));
-      return;
-    }
-    checks_.Integer(root_.Field("first_tile"), tiles.first_tile, 0,
-                    tiles.total());
+    if (samples <= limits_.max_stream_samples) return true;
+    violations_->Add(root_.Field("window").Text(),
+                     "must have at most " +
+                         std::to_string(limits_.max_stream_samples) +
+                         " samples, got " + std::to_string(samples));
+    return false;
   }
 
   const v1::StreamSurfaceRequest& request_;

@@ -133,6 +133,10 @@ TEST_F(RequestPlanTest, NoFieldHidesAnother) {
   EXPECT_THAT(
       Wrong(R"({"tileSize": 4, "tiles": {"columns": 1, "rows": 1}})", true),
       ElementsAre("tile_size: must be in [2, 3], got 4"));
+  EXPECT_THAT(Wrong(R"({"window": {"width": 1, "height": 1}, "encoding": 9,
+                        "range": {"minimum": 5, "maximum": 5}})"),
+              ElementsAre("encoding: must be a value that the API knows, got 9",
+                          "range.maximum: must be above minimum 5, got 5"));
   core::TerrainSpec line;
   line.dimensions = 1;
   line.domain = core::Domain{3, 0};

@@ -9,6 +9,7 @@
 namespace terrane::server {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
@@ -126,6 +127,52 @@ TEST(SurfacePlanTest, NamesWhatIsWrong) {
   EXPECT_THAT(PlanError(R"({"columns": 1048576, "rows": 1048576})"),
               HasSubstr("window: must have at most 68719476736 samples, got "
                         "1099511627776"));
+}
+
+std::vector<std::string> PlanFields(const std::string& json,
+                                    const Limits& limits = {}) {
+  core::Violations violations;
+  PlanSurface(FromJson<v1::StreamSurfaceRequest>(json), nullptr, limits, "",
+              "surface.recipe.", &violations);
+  std::vector<std::string> fields;
+  for (const core::Violation& one : violations.kept()) {
+    fields.push_back(one.field);
+  }
+  return fields;
+}
+
+// A wrong field hides none of the others.
+TEST(SurfacePlanTest, NoFieldHidesAnother) {
+  EXPECT_THAT(
+      PlanFields(R"({"columns": 1, "rows": 9, "tileSize": 5000, "output": 5,
+                     "encoding": 9, "range": {"minimum": 1, "maximum": 0},
+                     "window": {"x": -1, "width": 0, "y": 9, "height": 99},
+                     "firstTile": -1})"),
+      ElementsAre("columns", "tile_size", "output", "encoding", "range.maximum",
+                  "window.x", "window.width", "window.y", "window.height",
+                  "first_tile"));
+  EXPECT_THAT(PlanFields(R"({"columns": 9, "rows": 9, "encoding": 9})"),
+              ElementsAre("encoding"));
+  EXPECT_THAT(PlanFields(R"({"columns": 1048576, "rows": 1048576,
+                             "tileSize": -1, "firstTile": -1})"),
+              ElementsAre("tile_size", "window", "first_tile"));
+}
+
+// What depends on a field that is wrong is not guessed at.
+TEST(SurfacePlanTest, AWrongFieldAccusesNoOther) {
+  EXPECT_THAT(PlanFields(R"({"columns": -1, "rows": 9, "firstTile": 1000,
+                             "window": {"x": 500, "width": 600, "y": 0,
+                                        "height": 9}, "tileSize": 1})"),
+              ElementsAre("columns"));
+  EXPECT_THAT(PlanFields(R"({"columns": 9, "rows": 9, "firstTile": 1000,
+                             "tileSize": -1})"),
+              ElementsAre("tile_size"));
+  Limits limits;
+  limits.max_tile_size = 1;
+  EXPECT_THAT(PlanFields(R"({"columns": 9, "rows": 9, "tileSize": 1,
+                             "shareEdges": true})",
+                         limits),
+              ElementsAre("tile_size"));
 }
 
 }  // namespace
