@@ -1,8 +1,8 @@
 // StreamGate: how many streams are open at the same time.
 //
-// Up to `active` streams are open, three quarters at most of one client: readers
-// that take their time hold their places, and others must find one. Up to
-// `waiting` more stand in line. As one ends, a stream of the client with the
+// Up to `active` streams are open, three quarters at most of one client:
+// readers that take their time hold their places, and others must find one. Up
+// to `waiting` more stand in line. As one ends, a stream of the client with the
 // fewest open ones starts, of these the one that came first. When the line is
 // full, the client with the most streams in it loses its last one: a client
 // that asks for a thousand streams waits for itself and not before the others.
