@@ -138,7 +138,8 @@ MeshSize BladeSize(const BladeSpec& blade) {
 
 Mesh MakeBladeMesh(PetalMethod method, const BladeSpec& blade,
                    const BladeChoice& choice, std::int64_t seed,
-                   std::uint32_t salt, const PerlinNoise& noise) {
+                   std::uint32_t salt, const PerlinNoise& noise,
+                   const std::stop_token& stop) {
   const BladeOutline outline(
       blade.sketches[static_cast<std::size_t>(choice.sketch)]);
   const std::unique_ptr<BladeSurface> surface =
@@ -148,6 +149,7 @@ Mesh MakeBladeMesh(PetalMethod method, const BladeSpec& blade,
   BladeWriter writer(blade, outline.widest(), noise, &mesh);
   BladeRow row;
   for (int j = 0; j <= blade.rows; ++j) {
+    if (stop.stop_requested()) return mesh;
     surface->Make(outline.spans() * (static_cast<double>(j) / blade.rows),
                   blade.columns, &row);
     writer.Add(row);

@@ -9,6 +9,7 @@
 #define TERRANE_CORE_FLOWER_BLADE_MESH_H_
 
 #include <cstdint>
+#include <stop_token>
 
 #include "core/flower/blade_rows.h"
 #include "core/flower/flower_spec.h"
@@ -34,10 +35,11 @@ BladeShape ShapeAt(const BladeSpec& blade, int step);
 
 MeshSize BladeSize(const BladeSpec& blade);
 
-// `blade` is valid.
+// `blade` is valid. Of no use when `stop` was asked to.
 Mesh MakeBladeMesh(PetalMethod method, const BladeSpec& blade,
                    const BladeChoice& choice, std::int64_t seed,
-                   std::uint32_t salt, const PerlinNoise& noise);
+                   std::uint32_t salt, const PerlinNoise& noise,
+                   const std::stop_token& stop = {});
 
 // 1 - |mean normal|^2 over the sheet before it is bent, by area: under 0.01 it
 // is flat, 0.1 to 0.3 ruffled, above kFoldingVariance it folds.

@@ -28,49 +28,67 @@ std::int64_t Plus(std::int64_t a, std::int64_t b) {
   return a > kMost - b ? kMost : a + b;
 }
 
-void AddMeshes(const MeshSize& size, bool has_colors, std::int64_t count,
-               FlowerEstimate* estimate) {
-  const std::int64_t of_vertex = kVertexBytes + (has_colors ? kColorBytes : 0);
-  const std::int64_t bytes = Plus(Times(size.vertices, of_vertex),
-                                  Times(size.triangles, kTriangleBytes));
-  estimate->prototypes = Plus(estimate->prototypes, count);
-  estimate->vertices = Plus(estimate->vertices, Times(size.vertices, count));
-  estimate->triangles = Plus(estimate->triangles, Times(size.triangles, count));
+void AddMeshes(const PrototypeKind& kind, FlowerEstimate* estimate) {
+  const std::int64_t of_vertex =
+      kVertexBytes + (kind.has_colors ? kColorBytes : 0);
+  const std::int64_t bytes = Plus(Times(kind.size.vertices, of_vertex),
+                                  Times(kind.size.triangles, kTriangleBytes));
+  estimate->prototypes = Plus(estimate->prototypes, kind.count);
+  estimate->vertices =
+      Plus(estimate->vertices, Times(kind.size.vertices, kind.count));
+  estimate->triangles =
+      Plus(estimate->triangles, Times(kind.size.triangles, kind.count));
   estimate->prototype_bytes =
-      Plus(estimate->prototype_bytes, Times(bytes, count));
+      Plus(estimate->prototype_bytes, Times(bytes, kind.count));
 }
 
-void AddBlades(PetalMethod method, const BladeSpec& blade,
-               FlowerEstimate* estimate) {
+PrototypeKind KindOf(const BladeSpec& blade) {
+  return {BladeSize(blade), HasColors(blade.colors), BladeMeshes(blade)};
+}
+
+std::int64_t ControlValuesOf(PetalMethod method, const BladeSpec& blade) {
+  std::int64_t values = 0;
   for (const Sketch& sketch : blade.sketches) {
-    estimate->control_values += ControlValues(method, sketch);
+    values += ControlValues(method, sketch);
   }
-  AddMeshes(BladeSize(blade), HasColors(blade.colors), BladeMeshes(blade),
-            estimate);
+  return values;
 }
 
 }  // namespace
 
-FlowerEstimate EstimateFlower(const FlowerSpec& spec) {
-  FlowerEstimate estimate;
-  std::int64_t of_plant = 0;
+std::vector<PrototypeKind> PrototypeKinds(const FlowerSpec& spec) {
+  std::vector<PrototypeKind> kinds;
   if (spec.stem.has_value()) {
-    AddMeshes(StemSize(*spec.stem), false, spec.stem->variants, &estimate);
-    if (HasStalks(spec)) {
-      AddMeshes(CylinderSize(kStalkSides), false, 1, &estimate);
-    }
-    of_plant = 1;
+    kinds.push_back({StemSize(*spec.stem), false, spec.stem->variants});
+    if (HasStalks(spec)) kinds.push_back({CylinderSize(kStalkSides), false, 1});
   }
   for (const LeafGroup& group : spec.leaves) {
-    AddBlades(spec.method, group.blade, &estimate);
+    kinds.push_back(KindOf(group.blade));
+  }
+  for (const PetalGroup& group : spec.petals) {
+    kinds.push_back(KindOf(group.blade));
+  }
+  for (const SolidGroup& group : spec.solids) {
+    kinds.push_back({SolidSize(group), HasColors(group), 1});
+  }
+  return kinds;
+}
+
+FlowerEstimate EstimateFlower(const FlowerSpec& spec) {
+  FlowerEstimate estimate;
+  for (const PrototypeKind& kind : PrototypeKinds(spec)) {
+    AddMeshes(kind, &estimate);
+  }
+  std::int64_t of_plant = spec.stem.has_value() ? 1 : 0;
+  for (const LeafGroup& group : spec.leaves) {
+    estimate.control_values += ControlValuesOf(spec.method, group.blade);
     of_plant = Plus(of_plant, Times(group.count, RowsOfLeaf(spec, group)));
   }
   for (const PetalGroup& group : spec.petals) {
-    AddBlades(spec.method, group.blade, &estimate);
+    estimate.control_values += ControlValuesOf(spec.method, group.blade);
     of_plant = Plus(of_plant, group.count);
   }
   for (const SolidGroup& group : spec.solids) {
-    AddMeshes(SolidSize(group), HasColors(group), 1, &estimate);
     of_plant = Plus(of_plant, group.count);
   }
   estimate.instances = Times(of_plant, spec.bed.plants);

@@ -7,8 +7,10 @@
 #define TERRANE_CORE_FLOWER_ESTIMATE_FLOWER_H_
 
 #include <cstdint>
+#include <vector>
 
 #include "core/flower/flower_spec.h"
+#include "core/flower/solid_mesh.h"
 
 namespace terrane::core {
 
@@ -27,6 +29,16 @@ struct FlowerEstimate {
 };
 
 FlowerEstimate EstimateFlower(const FlowerSpec& spec);
+
+// Prototypes of one size.
+struct PrototypeKind {
+  MeshSize size;
+  bool has_colors = false;
+  std::int64_t count = 0;
+};
+
+// All the prototypes, in their order.
+std::vector<PrototypeKind> PrototypeKinds(const FlowerSpec& spec);
 
 }  // namespace terrane::core
 

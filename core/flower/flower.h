@@ -18,6 +18,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -35,9 +36,11 @@ class Flower {
  public:
   // Validates the spec and makes the prototypes. Errors: INVALID_ARGUMENT with
   // violations (field paths relative to the recipe, such as
-  // "petals[0].blade.sketches[1].points").
+  // "petals[0].blade.sketches[1].points"); CANCELLED when `stop` was asked to,
+  // within a row of a prototype.
   static absl::StatusOr<std::shared_ptr<const Flower>> Create(
-      const FlowerSpec& spec, const FlowerLimits& limits = {});
+      const FlowerSpec& spec, const FlowerLimits& limits = {},
+      const std::stop_token& stop = {});
 
   const FlowerSpec& spec() const { return spec_; }
   const FlowerEstimate& estimate() const { return estimate_; }
@@ -56,7 +59,7 @@ class Flower {
   }
 
  private:
-  explicit Flower(const FlowerSpec& spec);
+  Flower(const FlowerSpec& spec, const std::stop_token& stop);
   Flower(const Flower&) = delete;
   Flower& operator=(const Flower&) = delete;
 

@@ -15,12 +15,13 @@ constexpr std::uint32_t kLeafSalt = 1000;
 
 void AddBlades(const FlowerSpec& spec, const BladeSpec& blade,
                FlowerOrgan organ, const std::string& name, std::uint32_t salt,
-               const PerlinNoise& noise,
+               const PerlinNoise& noise, const std::stop_token& stop,
                std::vector<FlowerPrototype>* prototypes) {
   const int sketches = static_cast<int>(blade.sketches.size());
   for (int sketch = 0; sketch < sketches; ++sketch) {
     for (int variant = 0; variant < blade.variants; ++variant) {
       for (int step = 0; step < blade.steps; ++step) {
+        if (stop.stop_requested()) return;
         const BladeChoice choice = {sketch, variant, step};
         std::string full = name;
         full += ", sketch " + std::to_string(sketch);
@@ -28,7 +29,7 @@ void AddBlades(const FlowerSpec& spec, const BladeSpec& blade,
         full += ", step " + std::to_string(step);
         prototypes->push_back({std::move(full), organ, blade.material,
                                MakeBladeMesh(spec.method, blade, choice,
-                                             spec.seed, salt, noise)});
+                                             spec.seed, salt, noise, stop)});
       }
     }
   }
@@ -36,7 +37,8 @@ void AddBlades(const FlowerSpec& spec, const BladeSpec& blade,
 
 // The largest normal variance of a blade's reliefs.
 double LargestVariance(const FlowerSpec& spec, const BladeSpec& blade,
-                       std::uint32_t salt, const PerlinNoise& noise) {
+                       std::uint32_t salt, const PerlinNoise& noise,
+                       const std::stop_token& stop) {
   double largest = 0;
   Relief relief = blade.relief;
   relief.gain *=
@@ -44,6 +46,7 @@ double LargestVariance(const FlowerSpec& spec, const BladeSpec& blade,
   const int sketches = static_cast<int>(blade.sketches.size());
   for (int sketch = 0; sketch < sketches; ++sketch) {
     for (int variant = 0; variant < blade.variants; ++variant) {
+      if (stop.stop_requested()) return 0;
       const LatticeOffset offset =
           OffsetOf(spec.seed, salt, {sketch, variant, 0});
       largest = std::max(
@@ -111,7 +114,8 @@ PrototypeTable::PrototypeTable(const FlowerSpec& spec) {
 }
 
 std::vector<FlowerPrototype> MakePrototypes(const FlowerSpec& spec,
-                                            const PerlinNoise& noise) {
+                                            const PerlinNoise& noise,
+                                            const std::stop_token& stop) {
   std::vector<FlowerPrototype> prototypes;
   if (spec.stem.has_value()) {
     const StemSpec& stem = *spec.stem;
@@ -128,11 +132,11 @@ std::vector<FlowerPrototype> MakePrototypes(const FlowerSpec& spec,
   for (std::size_t i = 0; i < spec.leaves.size(); ++i) {
     AddBlades(spec, spec.leaves[i].blade, FlowerOrgan::kLeaf,
               Numbered("leaves", i), static_cast<std::uint32_t>(i) + kLeafSalt,
-              noise, &prototypes);
+              noise, stop, &prototypes);
   }
   for (std::size_t i = 0; i < spec.petals.size(); ++i) {
     AddBlades(spec, spec.petals[i].blade, spec.petals[i].organ,
-              Numbered("petals", i), static_cast<std::uint32_t>(i), noise,
+              Numbered("petals", i), static_cast<std::uint32_t>(i), noise, stop,
               &prototypes);
   }
   for (std::size_t i = 0; i < spec.solids.size(); ++i) {
@@ -144,20 +148,21 @@ std::vector<FlowerPrototype> MakePrototypes(const FlowerSpec& spec,
 }
 
 std::vector<std::string> FoldWarnings(const FlowerSpec& spec,
-                                      const PerlinNoise& noise) {
+                                      const PerlinNoise& noise,
+                                      const std::stop_token& stop) {
   std::vector<std::string> warnings;
   if (spec.method != PetalMethod::kPerlin) return warnings;
   for (std::size_t i = 0; i < spec.petals.size(); ++i) {
     WarnOfFolds("petals[" + std::to_string(i) + "]",
                 LargestVariance(spec, spec.petals[i].blade,
-                                static_cast<std::uint32_t>(i), noise),
+                                static_cast<std::uint32_t>(i), noise, stop),
                 &warnings);
   }
   for (std::size_t i = 0; i < spec.leaves.size(); ++i) {
     WarnOfFolds(
         "leaves[" + std::to_string(i) + "]",
         LargestVariance(spec, spec.leaves[i].blade,
-                        static_cast<std::uint32_t>(i) + kLeafSalt, noise),
+                        static_cast<std::uint32_t>(i) + kLeafSalt, noise, stop),
         &warnings);
   }
   return warnings;

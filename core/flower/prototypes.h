@@ -7,6 +7,7 @@
 #define TERRANE_CORE_FLOWER_PROTOTYPES_H_
 
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -47,12 +48,16 @@ std::uint32_t BladeIndex(const BladeSpec& blade, const BladeChoice& choice);
 // Whether leaves have stalks: they need a stem to be as thick as a part of.
 bool HasStalks(const FlowerSpec& spec);
 
+// Of no use when `stop` was asked to.
 std::vector<FlowerPrototype> MakePrototypes(const FlowerSpec& spec,
-                                            const PerlinNoise& noise);
+                                            const PerlinNoise& noise,
+                                            const std::stop_token& stop);
 
-// One for each group whose relief folds in some sketch and variant.
+// One for each group whose relief folds in some sketch and variant. Of no use
+// when `stop` was asked to.
 std::vector<std::string> FoldWarnings(const FlowerSpec& spec,
-                                      const PerlinNoise& noise);
+                                      const PerlinNoise& noise,
+                                      const std::stop_token& stop);
 
 }  // namespace terrane::core
 

@@ -53,13 +53,17 @@ bool ValidateSketch(const Path& path, const Sketch& sketch,
   const Path points = path.Field("points");
   bool good = checks->Count(points, sketch.points.size(), kLeastSketchPoints,
                             kMostSketchPoints);
+  const std::size_t count = std::min(sketch.points.size(), kMostSketchPoints);
   double before = 0;
-  for (std::size_t i = 0; i < sketch.points.size() && good; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const Path point = path.Element("points", i);
     const SketchPoint& p = sketch.points[i];
-    good = checks->Number(point.Field("x"), p.x, {0, 2, true, false}) &
-           checks->Number(point.Field("y"), p.y, {before, 1, true, true});
-    before = p.y;
+    good &= checks->Number(point.Field("x"), p.x, {0, 2, true, false});
+    if (checks->Number(point.Field("y"), p.y, {before, 1, true, true})) {
+      before = p.y;
+    } else {
+      good = false;
+    }
   }
   if (!good) return false;
   const std::string fault = BladeOutline(sketch).Fault();
@@ -91,10 +95,10 @@ void ValidateColors(const Path& path, const BladeColors& colors,
   if (!colors.blotch.has_value()) return;
   const Path blotch = path.Field("blotch");
   ValidateTint(blotch.Field("tint"), colors.blotch->tint, checks);
-  if (checks->Number(blotch.Field("from"), colors.blotch->from, {0, 2})) {
-    checks->Number(blotch.Field("to"), colors.blotch->to,
-                   {colors.blotch->from, 2, true, false});
-  }
+  const bool from_good =
+      checks->Number(blotch.Field("from"), colors.blotch->from, {0, 2});
+  checks->Number(blotch.Field("to"), colors.blotch->to,
+                 {from_good ? colors.blotch->from : 0, 2, true, false});
   checks->Number(blotch.Field("rays"), colors.blotch->rays, kShares);
 }
 
@@ -201,9 +205,9 @@ void ValidateLeaves(const Path& path, const LeafGroup& group,
                     FieldChecks* checks) {
   checks->Integer(path.Field("count"), group.count, 1, 1000);
   ValidateBlade(path.Field("blade"), group.blade, checks);
-  if (checks->Number(path.Field("from"), group.from, kShares)) {
-    checks->Number(path.Field("to"), group.to, {group.from, 1});
-  }
+  const bool from_good =
+      checks->Number(path.Field("from"), group.from, kShares);
+  checks->Number(path.Field("to"), group.to, {from_good ? group.from : 0, 1});
   checks->Number(path.Field("angle_deg"), group.angle_deg, {-90, 90});
   checks->Number(path.Field("size"), group.size, kSizes);
   checks->Number(path.Field("divergence_deg"), group.divergence_deg, {0, 360});

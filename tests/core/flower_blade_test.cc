@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "core/flower/bezier_rows.h"
@@ -375,6 +376,15 @@ TEST(BladeMesh, VariantsDifferAndStepsBlend) {
   EXPECT_EQ(ShapeAt(blade, 0), blade.closed);
   EXPECT_EQ(ShapeAt(blade, 1), (BladeShape{130, 35, -10, 0.05}));
   EXPECT_EQ(ShapeAt(blade, 2), blade.open);
+}
+
+TEST(BladeMesh, StopsAtARow) {
+  const PerlinNoise noise(4);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_TRUE(MakeBladeMesh(PetalMethod::kPerlin, Blade(), {}, 4, 0, noise,
+                            stop.get_token())
+                  .positions.empty());
 }
 
 TEST(BezierPetal, MeetsTheNoisePetalAtThirds) {

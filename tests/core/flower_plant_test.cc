@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <stop_token>
@@ -98,11 +99,27 @@ TEST(Flower, EstimateIsExact) {
     EXPECT_EQ(estimate.vertices, vertices);
     EXPECT_EQ(estimate.triangles, triangles);
     EXPECT_EQ(estimate.prototype_bytes, bytes);
+    std::size_t index = 0;
+    for (const PrototypeKind& kind : PrototypeKinds(spec)) {
+      for (std::int64_t k = 0; k < kind.count; ++k) {
+        const Mesh& mesh = flower->prototypes().at(index++).mesh;
+        EXPECT_EQ(std::ssize(mesh.positions), kind.size.vertices);
+        EXPECT_EQ(std::ssize(mesh.indices), 3 * kind.size.triangles);
+        EXPECT_EQ(!mesh.colors.empty(), kind.has_colors);
+      }
+    }
     const InstanceBlock rows = GrowRows(flower);
     EXPECT_EQ(estimate.instances, static_cast<std::int64_t>(rows.rows()));
     EXPECT_EQ(estimate.instance_bytes,
               static_cast<std::int64_t>(RowBytes(rows, 0, rows.rows()).size()));
   }
+}
+
+TEST(Flower, StopsWhenAsked) {
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_TRUE(
+      absl::IsCancelled(Flower::Create(Rose(), {}, stop.get_token()).status()));
 }
 
 TEST(Flower, ControlValuesAreThoseOfItsMethod) {

@@ -232,6 +232,23 @@ TEST(FlowerValidation, CollectsEveryViolationAfterThePrefix) {
                           Field(&Violation::field, "recipe.bed.jitter")));
 }
 
+TEST(FlowerValidation, NoFieldHidesAnother) {
+  FlowerSpec spec = FlowerPreset("rose");
+  SketchOf(&spec).points = {{-1, kNan}, {3, 0.4}, {0.2, 0.3}, {kNan, kNan}};
+  BladeOf(&spec).colors.blotch = {{1, 1, 1}, -1, 3, 0};
+  spec.leaves[0].from = -1;
+  spec.leaves[0].to = 2;
+  std::vector<std::string> fields;
+  for (const Violation& one : Validate(spec)) fields.push_back(one.field);
+  const std::string blade = "petals[0].blade.";
+  const std::string points = blade + "sketches[1].points";
+  EXPECT_THAT(fields, ElementsAre(points, points + "[0].x", points + "[0].y",
+                                  points + "[1].x", points + "[2].y",
+                                  blade + "colors.blotch.from",
+                                  blade + "colors.blotch.to", "leaves[0].from",
+                                  "leaves[0].to"));
+}
+
 TEST(FlowerValidation, SizesAreHeldBeforeAnythingIsMade) {
   FlowerSpec spec = FlowerPreset("rose");
   // 16 * 16 * 16 meshes of 512 * 1024 cells: 120 GB.
