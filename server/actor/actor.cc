@@ -13,8 +13,10 @@
 #include "core/terrain/spec_checks.h"
 #include "core/terrain/spot_heights.h"
 #include "core/tree/tree_spec.h"
+#include "server/actor/chosen_recipe.h"
 #include "server/actor/cost_meter.h"
 #include "server/actor/error_reason.h"
+#include "server/actor/height_tile.h"
 #include "server/actor/presets.h"
 #include "server/actor/raster_store.h"
 #include "server/actor/raster_upload.h"
@@ -33,9 +35,9 @@ constexpr std::int64_t kSpotTables = 16;
 
 // A request's terrain as read: a valid spec only when no violation was added.
 struct ReadChoice {
-  v1::TerrainRecipe recipe;  // of the preset, with the seed asked for
-  std::string recipe_prefix;
-  ReadRecipe read;
+  // Missing is, besides a preset, a raster or a spot table.
+  ChosenRecipe<v1::TerrainRecipe> chosen;
+  ReadRecipe read;  // of the recipe that was chosen
 };
 
 absl::Status RasterNotFound(const std::string& raster_id) {
@@ -63,6 +65,8 @@ class TerrainActor : public Actor {
         flowers_(limits),
         renders_(this, limits) {}
 
+  absl::StatusOr<v1::Window> CheckTiles(
+      const v1::StreamTilesRequest& request) override;
   absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(
       const v1::StreamTilesRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::PreparedTerrain> PrepareTerrain(
@@ -98,12 +102,9 @@ class TerrainActor : public Actor {
     TilePlan plan;
   };
 
-  // Finds and converts the terrain of a request. What is not found is answered
-  // at once, NOT_FOUND, since nothing that depends on it can be checked;
-  // everything else adds violations.
-  absl::StatusOr<ReadChoice> Read(const v1::TerrainChoice& choice,
-                                  const std::string& prefix,
-                                  core::Violations* violations);
+  // Finds and converts the terrain of a request.
+  ReadChoice Read(const v1::TerrainChoice& choice, const std::string& prefix,
+                  core::Violations* violations);
   // The terrain of a valid choice, from the cache or made now.
   absl::StatusOr<std::shared_ptr<const PreparedTerrain>> Prepare(
       const ReadChoice& choice, const core::Preparation& preparation);
@@ -122,41 +123,34 @@ class TerrainActor : public Actor {
   const RenderMaker renders_;
 };
 
-// The spec to plan with, or null when it has violations.
+// The spec to plan with, or null when there is none or it has violations.
 const core::TerrainSpec* ValidSpec(const ReadChoice& choice,
                                    const core::Violations& violations) {
-  return violations.empty() ? &choice.read.spec : nullptr;
+  const core::TerrainSpec& spec = choice.read.spec;
+  // The domain of a refinement is that of its raster.
+  const bool knows_domain =
+      !spec.refinement.has_value() || core::RefinedRaster(spec) != nullptr;
+  return violations.empty() && choice.chosen.recipe.has_value() && knows_domain
+             ? &spec
+             : nullptr;
 }
 
-absl::StatusOr<ReadChoice> TerrainActor::Read(const v1::TerrainChoice& choice,
-                                              const std::string& prefix,
-                                              core::Violations* violations) {
+ReadChoice TerrainActor::Read(const v1::TerrainChoice& choice,
+                              const std::string& prefix,
+                              core::Violations* violations) {
   ReadChoice result;
-  result.recipe_prefix = prefix + "terrain.recipe.";
-  switch (choice.choice_case()) {
-    case v1::TerrainChoice::kRecipe:
-      result.recipe = choice.recipe();
-      break;
-    case v1::TerrainChoice::kPreset: {
-      const auto preset = FindPreset(choice.preset());
-      if (!preset.ok()) return preset.status();
-      result.recipe = (*preset)->recipe();
-      result.recipe_prefix = prefix + "terrain.preset.";
-      break;
-    }
-    case v1::TerrainChoice::CHOICE_NOT_SET:
-      violations->Add(prefix + "terrain",
-                      "must hold a recipe or a preset, got neither");
-      return result;
-  }
-  if (choice.has_seed()) result.recipe.set_seed(choice.seed());
+  result.chosen = ChooseRecipe<v1::TerrainRecipe>(
+      choice, FindPreset, prefix + "terrain", violations);
+  if (!result.chosen.recipe.has_value()) return result;
   result.read =
-      ReadTerrainRecipe(result.recipe, {&rasters_, &spot_tables_},
-                        limits_.recipe, result.recipe_prefix, violations);
-  if (!violations->empty() || result.read.complete()) return result;
-  return !result.read.missing_raster.empty()
-             ? RasterNotFound(result.read.missing_raster)
-             : SpotTableNotFound(result.read.missing_spot_table);
+      ReadTerrainRecipe(*result.chosen.recipe, {&rasters_, &spot_tables_},
+                        limits_.recipe, result.chosen.prefix, violations);
+  if (!result.read.missing_raster.empty()) {
+    result.chosen.missing = RasterNotFound(result.read.missing_raster);
+  } else if (!result.read.missing_spot_table.empty()) {
+    result.chosen.missing = SpotTableNotFound(result.read.missing_spot_table);
+  }
+  return result;
 }
 
 absl::StatusOr<std::shared_ptr<const PreparedTerrain>> TerrainActor::Prepare(
@@ -168,14 +162,15 @@ absl::StatusOr<std::shared_ptr<const PreparedTerrain>> TerrainActor::Prepare(
         "making the terrain ready takes up to " + std::to_string(bytes) +
         " bytes; the server gives " + std::to_string(limits_.prepared_bytes));
   }
-  auto prepared = terrains_.Prepare(choice.recipe, choice.read, preparation);
+  auto prepared =
+      terrains_.Prepare(*choice.chosen.recipe, choice.read, preparation);
   const std::vector<core::Violation> found =
       core::ViolationsOf(prepared.status());
   if (found.empty()) return prepared;
   // The core speaks of the recipe, the answer of the request.
   core::Violations violations;
   for (const core::Violation& one : found) {
-    violations.Add(choice.recipe_prefix + one.field, one.description);
+    violations.Add(choice.chosen.prefix + one.field, one.description);
   }
   return violations.ToStatus();
 }
@@ -183,14 +178,22 @@ absl::StatusOr<std::shared_ptr<const PreparedTerrain>> TerrainActor::Prepare(
 absl::StatusOr<TerrainActor::PlannedTiles> TerrainActor::Plan(
     const v1::StreamTilesRequest& request, const std::string& prefix) {
   core::Violations violations;
-  auto choice = Read(request.terrain(), prefix, &violations);
-  if (!choice.ok()) return choice.status();
   PlannedTiles planned;
-  planned.plan = PlanTiles(request, ValidSpec(*choice, violations), limits_,
-                           prefix, &violations);
-  if (!violations.empty()) return violations.ToStatus();
-  planned.choice = *std::move(choice);
+  planned.choice = Read(request.terrain(), prefix, &violations);
+  planned.plan = PlanTiles(request, ValidSpec(planned.choice, violations),
+                           limits_, prefix, &violations);
+  const absl::Status fault = FaultOf(violations, planned.choice.chosen.missing);
+  if (!fault.ok()) return fault;
   return planned;
+}
+
+absl::StatusOr<v1::Window> TerrainActor::CheckTiles(
+    const v1::StreamTilesRequest& request) {
+  const auto planned = Plan(request, "");
+  if (!planned.ok()) return planned.status();
+  v1::Window window;
+  WriteWindow(planned->plan.whole, &window);
+  return window;
 }
 
 absl::StatusOr<std::shared_ptr<const TileJob>> TerrainActor::OpenTiles(
@@ -206,10 +209,10 @@ absl::StatusOr<v1::PreparedTerrain> TerrainActor::PrepareTerrain(
     const v1::PrepareTerrainRequest& request, const OnProgress& on_progress,
     std::stop_token stop) {
   core::Violations violations;
-  const auto choice = Read(request.terrain(), "", &violations);
-  if (!choice.ok()) return choice.status();
-  if (!violations.empty()) return violations.ToStatus();
-  const auto prepared = Prepare(*choice, {std::move(stop), on_progress});
+  const ReadChoice choice = Read(request.terrain(), "", &violations);
+  const absl::Status fault = FaultOf(violations, choice.chosen.missing);
+  if (!fault.ok()) return fault;
+  const auto prepared = Prepare(choice, {std::move(stop), on_progress});
   if (!prepared.ok()) return prepared.status();
   v1::PreparedTerrain answer;
   *answer.mutable_recipe() = (*prepared)->recipe;
@@ -229,12 +232,12 @@ ReadChoice WithoutConditioning(ReadChoice choice) {
   if (core::ConditionsDiscrete(spec)) {
     spec.discrete_constraints.clear();
     spec.discrete_method.reset();
-    choice.recipe.clear_discrete_constraints();
-    choice.recipe.clear_discrete_method();
+    choice.chosen.recipe->clear_discrete_constraints();
+    choice.chosen.recipe->clear_discrete_method();
   }
   spec.spots = {};
   choice.read.spot_table_id.clear();
-  choice.recipe.clear_spots();
+  choice.chosen.recipe->clear_spots();
   return choice;
 }
 
@@ -266,12 +269,12 @@ absl::StatusOr<v1::EstimateTilesResponse> TerrainActor::EstimateTiles(
 absl::StatusOr<v1::GetProfileResponse> TerrainActor::GetProfile(
     const v1::GetProfileRequest& request, std::stop_token stop) {
   core::Violations violations;
-  const auto choice = Read(request.terrain(), "", &violations);
-  if (!choice.ok()) return choice.status();
+  const ReadChoice choice = Read(request.terrain(), "", &violations);
   const core::TileRequest plan = PlanProfile(
-      request, ValidSpec(*choice, violations), limits_, "", &violations);
-  if (!violations.empty()) return violations.ToStatus();
-  const auto prepared = Prepare(*choice, {stop, {}});
+      request, ValidSpec(choice, violations), limits_, "", &violations);
+  const absl::Status fault = FaultOf(violations, choice.chosen.missing);
+  if (!fault.ok()) return fault;
+  const auto prepared = Prepare(choice, {stop, {}});
   if (!prepared.ok()) return prepared.status();
   const core::Terrain& terrain = *(*prepared)->terrain;
 
@@ -304,12 +307,12 @@ absl::StatusOr<v1::GetProfileResponse> TerrainActor::GetProfile(
 absl::StatusOr<v1::GetHeightsResponse> TerrainActor::GetHeights(
     const v1::GetHeightsRequest& request, std::stop_token stop) {
   core::Violations violations;
-  const auto choice = Read(request.terrain(), "", &violations);
-  if (!choice.ok()) return choice.status();
+  const ReadChoice choice = Read(request.terrain(), "", &violations);
   const std::vector<core::Point2> points = PlanHeights(
-      request, ValidSpec(*choice, violations), limits_, "", &violations);
-  if (!violations.empty()) return violations.ToStatus();
-  const auto prepared = Prepare(*choice, {stop, {}});
+      request, ValidSpec(choice, violations), limits_, "", &violations);
+  const absl::Status fault = FaultOf(violations, choice.chosen.missing);
+  if (!fault.ok()) return fault;
+  const auto prepared = Prepare(choice, {stop, {}});
   if (!prepared.ok()) return prepared.status();
 
   v1::GetHeightsResponse response;

@@ -72,6 +72,11 @@ class Actor {
  public:
   virtual ~Actor() = default;
 
+  // The window that OpenTiles would open, checked before anything is made: its
+  // violations and NOT_FOUND, without what takes work.
+  virtual absl::StatusOr<v1::Window> CheckTiles(
+      const v1::StreamTilesRequest& request) = 0;
+
   // Every call that takes a stop token answers CANCELLED once it was asked to;
   // a preparation that other calls wait for goes on without it.
   virtual absl::StatusOr<std::shared_ptr<const TileJob>> OpenTiles(

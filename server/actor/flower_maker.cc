@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "core/base/field_checks.h"
+#include "core/flower/estimate_flower.h"
 #include "core/flower/flower_generator.h"
+#include "server/actor/chosen_recipe.h"
 #include "server/actor/headed_run.h"
 #include "server/actor/presets.h"
 #include "server/convert/content_hash.h"
@@ -22,17 +25,21 @@ constexpr double kFirstNsPerVertex = 200;
 constexpr auto kBlockRows =
     static_cast<std::int64_t>(core::FlowerGenerator::kBlockRows);
 
-std::int64_t PrototypeParts(const core::Flower& flower) {
-  std::size_t parts = 0;
-  for (const core::FlowerPrototype& prototype : flower.prototypes()) {
-    parts += PartsOfMesh(prototype.mesh.positions.size(),
-                         prototype.mesh.indices.size());
+std::int64_t PrototypeParts(const core::FlowerSpec& spec) {
+  std::int64_t parts = 0;
+  for (const core::PrototypeKind& kind : core::PrototypeKinds(spec)) {
+    parts +=
+        kind.count * static_cast<std::int64_t>(PartsOfMesh(
+                         static_cast<std::size_t>(kind.size.vertices),
+                         static_cast<std::size_t>(3 * kind.size.triangles)));
   }
-  return static_cast<std::int64_t>(parts);
+  return parts;
 }
 
-std::int64_t InstanceParts(const core::Flower& flower) {
-  return (flower.rows() + kBlockRows - 1) / kBlockRows;
+// All parts of a valid spec's stream.
+std::int64_t PartsOf(const core::FlowerSpec& spec) {
+  const std::int64_t rows = core::EstimateFlower(spec).instances;
+  return PrototypeParts(spec) + (rows + kBlockRows - 1) / kBlockRows;
 }
 
 v1::FlowerHeader HeaderOf(const core::Flower& flower) {
@@ -42,7 +49,7 @@ v1::FlowerHeader HeaderOf(const core::Flower& flower) {
   header.set_revision(core::kFlowerRevision);
   header.set_prototypes(static_cast<int>(flower.prototypes().size()));
   header.set_rows(flower.rows());
-  header.set_parts(PrototypeParts(flower) + InstanceParts(flower));
+  header.set_parts(PartsOf(flower.spec()));
   for (const std::string& warning : flower.warnings()) {
     header.add_warnings(warning);
   }
@@ -52,12 +59,12 @@ v1::FlowerHeader HeaderOf(const core::Flower& flower) {
 // The parts of the prototypes, then those of the instances.
 class FlowerRun : public HeadedRun<v1::StreamFlowerResponse, v1::FlowerHeader> {
  public:
-  FlowerRun(std::shared_ptr<const core::Flower> flower, v1::FlowerHeader header,
-            std::int64_t first_part, const CostMeter& meter)
-      : HeadedRun(std::move(header),
+  FlowerRun(std::shared_ptr<const core::Flower> flower, std::int64_t first_part,
+            const CostMeter& meter)
+      : HeadedRun(HeaderOf(*flower),
                   meter.Seconds(flower->estimate().instances)),
         flower_(std::move(flower)),
-        prototype_parts_(PrototypeParts(*flower_)),
+        prototype_parts_(PrototypeParts(flower_->spec())),
         part_(first_part),
         generator_(flower_, std::min(std::max<std::int64_t>(
                                          part_ - prototype_parts_, 0) *
@@ -115,53 +122,35 @@ class FlowerRun : public HeadedRun<v1::StreamFlowerResponse, v1::FlowerHeader> {
 FlowerMaker::FlowerMaker(const Limits& limits)
     : limits_(limits), meter_(std::make_shared<CostMeter>(kFirstNsPerVertex)) {}
 
-absl::StatusOr<std::optional<core::FlowerSpec>> FlowerMaker::ReadChoice(
-    const v1::FlowerChoice& choice, const std::string& path,
-    core::Violations* violations) const {
-  v1::FlowerRecipe recipe;
-  switch (choice.choice_case()) {
-    case v1::FlowerChoice::kRecipe:
-      recipe = choice.recipe();
-      break;
-    case v1::FlowerChoice::kPreset: {
-      const auto preset = FindFlowerPreset(choice.preset());
-      if (!preset.ok()) return preset.status();
-      recipe = (*preset)->recipe();
-      break;
-    }
-    case v1::FlowerChoice::CHOICE_NOT_SET:
-      violations->Add(path, "must hold a recipe or a preset, got neither");
-      return std::optional<core::FlowerSpec>();
+ChosenFlower FlowerMaker::Choose(const v1::FlowerChoice& choice,
+                                 const std::string& path,
+                                 core::Violations* violations) const {
+  ChosenFlower chosen;
+  const std::size_t before = violations->total();
+  auto named = ChooseRecipe<v1::FlowerRecipe>(choice, FindFlowerPreset, path,
+                                              violations);
+  chosen.missing = std::move(named.missing);
+  // The default of a recipe's bed, not of a choice.
+  if (choice.has_plants() && choice.plants() == 0) {
+    violations->Add(path + ".plants", "must be in [1, 1000000], got 0");
   }
-  if (choice.has_seed()) recipe.set_seed(choice.seed());
+  if (!named.recipe.has_value()) return chosen;
+  v1::FlowerRecipe& recipe = *named.recipe;
   if (choice.has_stage()) recipe.set_stage(choice.stage());
   if (choice.method() != v1::PETAL_METHOD_UNSPECIFIED) {
     recipe.set_method(choice.method());
   }
   if (choice.has_plants()) recipe.mutable_bed()->set_plants(choice.plants());
-  core::Violations found;
-  core::FlowerSpec spec = ReadFlowerRecipe(
-      recipe, limits_.flower,
-      path + (choice.has_preset() ? ".preset." : ".recipe."), &found);
-  // The default of a recipe's bed, not of a choice.
-  if (choice.has_plants() && choice.plants() == 0) {
-    found.Add(path + ".plants", "must be in [1, 1000000], got 0");
-  }
-  if (found.empty()) return std::optional<core::FlowerSpec>(std::move(spec));
-  for (const core::Violation& one : found.kept()) {
-    violations->Add(one.field, one.description);
-  }
-  return std::optional<core::FlowerSpec>();
+  core::FlowerSpec spec =
+      ReadFlowerRecipe(recipe, limits_.flower, named.prefix, violations);
+  if (violations->total() == before) chosen.spec = std::move(spec);
+  return chosen;
 }
 
-absl::StatusOr<std::shared_ptr<const core::Flower>> FlowerMaker::Choose(
-    const v1::FlowerChoice& choice, const std::string& path,
-    core::Violations* violations) const {
-  const auto spec = ReadChoice(choice, path, violations);
-  if (!spec.ok()) return spec.status();
-  if (!spec->has_value()) return std::shared_ptr<const core::Flower>();
+absl::StatusOr<std::shared_ptr<const core::Flower>> FlowerMaker::Make(
+    const core::FlowerSpec& spec, const std::stop_token& stop) const {
   const auto start = std::chrono::steady_clock::now();
-  auto flower = core::Flower::Create(**spec, limits_.flower);
+  auto flower = core::Flower::Create(spec, limits_.flower, stop);
   if (flower.ok()) {
     meter_->Add(std::chrono::steady_clock::now() - start,
                 (*flower)->estimate().vertices);
@@ -170,28 +159,30 @@ absl::StatusOr<std::shared_ptr<const core::Flower>> FlowerMaker::Choose(
 }
 
 OpenedRun<v1::StreamFlowerResponse> FlowerMaker::Open(
-    const v1::StreamFlowerRequest& request) const {
+    const v1::StreamFlowerRequest& request, const std::stop_token& stop) const {
   core::Violations violations;
-  const auto flower = Choose(request.flower(), "flower", &violations);
-  if (!flower.ok()) return flower.status();
-  if (!violations.empty()) return violations.ToStatus();
-  v1::FlowerHeader header = HeaderOf(**flower);
+  const ChosenFlower chosen = Choose(request.flower(), "flower", &violations);
   const std::string root;
   core::FieldChecks(&violations)
       .Integer(core::Path(&root).Field("first_part"), request.first_part(), 0,
-               header.parts());
-  if (!violations.empty()) return violations.ToStatus();
-  return std::make_unique<FlowerRun>(*flower, std::move(header),
-                                     request.first_part(), *meter_);
+               chosen.spec.has_value()
+                   ? PartsOf(*chosen.spec)
+                   : std::numeric_limits<std::int64_t>::max());
+  const absl::Status fault = FaultOf(violations, chosen.missing);
+  if (!fault.ok()) return fault;
+  auto flower = Make(*chosen.spec, stop);
+  if (!flower.ok()) return flower.status();
+  return std::make_unique<FlowerRun>(*std::move(flower), request.first_part(),
+                                     *meter_);
 }
 
 absl::StatusOr<v1::EstimateFlowerResponse> FlowerMaker::Estimate(
     const v1::EstimateFlowerRequest& request) const {
   core::Violations violations;
-  const auto spec = ReadChoice(request.flower(), "flower", &violations);
-  if (!spec.ok()) return spec.status();
-  if (!violations.empty()) return violations.ToStatus();
-  const core::FlowerEstimate estimate = core::EstimateFlower(**spec);
+  const ChosenFlower chosen = Choose(request.flower(), "flower", &violations);
+  const absl::Status fault = FaultOf(violations, chosen.missing);
+  if (!fault.ok()) return fault;
+  const core::FlowerEstimate estimate = core::EstimateFlower(*chosen.spec);
   v1::EstimateFlowerResponse response;
   response.set_prototypes(estimate.prototypes);
   response.set_vertices(estimate.vertices);

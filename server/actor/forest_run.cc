@@ -153,10 +153,11 @@ void ValidateForest(const v1::StreamForestRequest& request,
   const std::string prefix;
   const core::Path root(&prefix);
   core::FieldChecks checks(violations);
-  if (!ValidateTrees(request, limits, root, &checks)) return;
+  const bool trees_good = ValidateTrees(request, limits, root, &checks);
   const std::int64_t trees = TreesOf(request);
-  checks.Integer(root.Field("first_tree"), request.first_tree(), 0, trees);
-  if (tree == nullptr) return;
+  checks.Integer(root.Field("first_tree"), request.first_tree(), 0,
+                 trees_good ? trees : limits.max_forest_trees);
+  if (tree == nullptr || !trees_good) return;
   // At most 10^6 times 2^32: no overflow.
   const std::int64_t rows = trees * tree->estimate().segments_most;
   if (rows > limits.max_forest_segments) {

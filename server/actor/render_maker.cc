@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/actor/actor.h"
+#include "server/actor/chosen_recipe.h"
 #include "server/actor/render_run.h"
 #include "server/convert/render_convert.h"
 
@@ -65,8 +66,8 @@ OpenedRun<v1::StreamRenderResponse> RenderMaker::Open(
   const RenderPlan plan = ReadRenderPlan(request, limits_, prefix, &violations);
   auto source =
       OpenScene(request, {limits_, prefix, &violations, std::move(stop)});
-  if (!source.ok()) return source.status();
-  if (!violations.empty()) return violations.ToStatus();
+  const absl::Status fault = FaultOf(violations, source.status());
+  if (!fault.ok()) return fault;
   return MakeRenderRun(*std::move(source), plan, memory_, meter_);
 }
 
@@ -78,8 +79,8 @@ absl::StatusOr<v1::EstimateRenderResponse> RenderMaker::Estimate(
       ReadRenderPlan(request.request(), limits_, prefix, &violations);
   const auto size =
       EstimateScene(request.request(), {limits_, prefix, &violations, {}});
-  if (!size.ok()) return size.status();
-  if (!violations.empty()) return violations.ToStatus();
+  const absl::Status fault = FaultOf(violations, size.status());
+  if (!fault.ok()) return fault;
   v1::EstimateRenderResponse estimate;
   estimate.set_bands(plan.bands() - plan.first_band);
   estimate.set_data_bytes(plan.BytesFrom(plan.first_band));

@@ -30,7 +30,7 @@ class RenderMaker {
   // `actor` has this as its part, and is not called before it is whole.
   RenderMaker(Actor* actor, const Limits& limits);
 
-  // `stop` ends a terrain's preparation.
+  // `stop` ends making a terrain or a flower ready.
   OpenedRun<v1::StreamRenderResponse> Open(
       const v1::StreamRenderRequest& request, std::stop_token stop) const;
   absl::StatusOr<v1::EstimateRenderResponse> Estimate(

@@ -11,6 +11,7 @@
 #include "core/base/violations.h"
 #include "core/surface/height_field.h"
 #include "core/surface/surface.h"
+#include "server/actor/chosen_recipe.h"
 #include "server/actor/height_tile.h"
 #include "server/actor/presets.h"
 #include "server/convert/column_checksum.h"
@@ -35,48 +36,22 @@ struct PlannedSurface {
   }
 };
 
-// The recipe that a choice names; nothing, with a violation, when it names
-// none. NOT_FOUND for an unknown preset.
-absl::StatusOr<std::optional<v1::SurfaceRecipe>> ChosenRecipe(
-    const v1::SurfaceChoice& choice, const std::string& prefix,
-    core::Violations* violations) {
-  v1::SurfaceRecipe recipe;
-  switch (choice.choice_case()) {
-    case v1::SurfaceChoice::kRecipe:
-      recipe = choice.recipe();
-      break;
-    case v1::SurfaceChoice::kPreset: {
-      const auto preset = FindSurfacePreset(choice.preset());
-      if (!preset.ok()) return preset.status();
-      recipe = (*preset)->recipe();
-      break;
-    }
-    case v1::SurfaceChoice::CHOICE_NOT_SET:
-      violations->Add(prefix + "surface",
-                      "must hold a recipe or a preset, got neither");
-      return std::optional<v1::SurfaceRecipe>();
-  }
-  if (choice.has_seed()) recipe.set_seed(choice.seed());
-  return std::optional<v1::SurfaceRecipe>(std::move(recipe));
-}
-
 absl::StatusOr<PlannedSurface> PlanAll(const v1::StreamSurfaceRequest& request,
                                        const Limits& limits,
                                        const std::string& prefix) {
   core::Violations violations;
-  const auto recipe = ChosenRecipe(request.surface(), prefix, &violations);
-  if (!recipe.ok()) return recipe.status();
-  const std::string recipe_prefix =
-      prefix +
-      (request.surface().has_preset() ? "surface.preset." : "surface.recipe.");
+  const auto chosen = ChooseRecipe<v1::SurfaceRecipe>(
+      request.surface(), FindSurfacePreset, prefix + "surface", &violations);
   core::SurfaceSpec spec;
-  if (recipe->has_value()) {
-    spec = ReadSurfaceRecipe(**recipe, recipe_prefix, &violations);
+  if (chosen.recipe.has_value()) {
+    spec = ReadSurfaceRecipe(*chosen.recipe, chosen.prefix, &violations);
   }
+  const bool spec_good = chosen.recipe.has_value() && violations.empty();
   PlannedSurface planned;
-  planned.plan = PlanSurface(request, violations.empty() ? &spec : nullptr,
-                             limits, prefix, recipe_prefix, &violations);
-  if (!violations.empty()) return violations.ToStatus();
+  planned.plan = PlanSurface(request, spec_good ? &spec : nullptr, limits,
+                             prefix, chosen.prefix, &violations);
+  const absl::Status fault = FaultOf(violations, chosen.missing);
+  if (!fault.ok()) return fault;
   auto surface = core::Surface::Create(std::move(spec));
   if (!surface.ok()) return surface.status();
   planned.surface = *std::move(surface);

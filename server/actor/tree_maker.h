@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "core/base/violations.h"
 #include "core/tree/tree.h"
@@ -22,18 +23,20 @@ namespace terrane::server {
 
 // A tree that was asked for, and the header that announces it.
 struct ChosenTree {
+  // Null, with violations, when the choice is not valid, and when its preset is
+  // missing.
   std::shared_ptr<const core::Tree> tree;
   v1::TreeHeader header;
+  absl::Status missing;  // NOT_FOUND for a preset
 };
 
 class TreeMaker {
  public:
   explicit TreeMaker(const Limits& limits);
 
-  // The tree of a valid choice. `path` is the choice's in the request.
-  absl::StatusOr<ChosenTree> Choose(const v1::TreeChoice& choice,
-                                    const std::string& path,
-                                    core::Violations* violations) const;
+  // `path` is the choice's in the request.
+  ChosenTree Choose(const v1::TreeChoice& choice, const std::string& path,
+                    core::Violations* violations) const;
 
   OpenedRun<v1::StreamTreeResponse> OpenRows(
       const v1::StreamTreeRequest& request) const;

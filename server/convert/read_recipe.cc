@@ -1,4 +1,5 @@
 // The reading half of terrain_convert.h.
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,8 @@ class RecipeReader {
       : sources_(sources), limits_(limits), violations_(violations) {}
 
   void Read(const v1::TerrainRecipe& recipe, const Path& root);
+  // core::ValidateSpec of what was read.
+  void Validate(const std::string& prefix);
   ReadRecipe Take() { return std::move(read_); }
 
  private:
@@ -64,6 +67,8 @@ class RecipeReader {
   const core::SpecLimits& limits_;
   core::Violations* const violations_;
   std::string raster_crs_;
+  // The fields of the rasters that are not kept.
+  std::set<std::string> missing_rasters_;
   ReadRecipe read_;
 };
 
@@ -96,8 +101,11 @@ core::RasterShape RecipeReader::ReadRaster(const v1::RasterShape& shape,
     if (placed.raster != nullptr) {
       read_.raster_ids[placed.raster.get()] = shape.raster_id();
       raster_crs_ = placed.crs;
-    } else if (read_.missing_raster.empty()) {
-      read_.missing_raster = shape.raster_id();
+    } else {
+      missing_rasters_.insert(path.Field("raster_id").Text());
+      if (read_.missing_raster.empty()) {
+        read_.missing_raster = shape.raster_id();
+      }
     }
   }
   return {.raster = std::move(placed.raster),
@@ -301,6 +309,19 @@ void RecipeReader::Read(const v1::TerrainRecipe& recipe, const Path& root) {
                                  : "";
 }
 
+void RecipeReader::Validate(const std::string& prefix) {
+  if (missing_rasters_.empty()) {
+    core::ValidateSpec(read_.spec, limits_, prefix, violations_);
+    return;
+  }
+  core::Violations found;
+  core::ValidateSpec(read_.spec, limits_, prefix, &found);
+  for (const core::Violation& one : found.kept()) {
+    if (missing_rasters_.contains(one.field)) continue;
+    violations_->Add(one.field, one.description);
+  }
+}
+
 }  // namespace
 
 core::Frame ReadFrame(const v1::Frame& frame, const core::Path& path,
@@ -324,11 +345,8 @@ ReadRecipe ReadTerrainRecipe(const v1::TerrainRecipe& recipe,
   const Path root(&prefix);
   RecipeReader reader(sources, limits, violations);
   reader.Read(recipe, root);
-  ReadRecipe read = reader.Take();
-  if (read.complete()) {
-    core::ValidateSpec(read.spec, limits, prefix, violations);
-  }
-  return read;
+  reader.Validate(prefix);
+  return reader.Take();
 }
 
 }  // namespace terrane::server

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "core/base/field_checks.h"
 #include "core/raytrace/tone.h"
@@ -180,6 +181,7 @@ RenderPlan ReadRenderPlan(const v1::StreamRenderRequest& request,
   core::FieldChecks checks(violations);
   const core::Path root(&prefix);
   core::PictureSpec& picture = plan.picture;
+  const std::size_t before = violations->total();
   picture.width = ReadSize(request.width(), kDefaultWidth,
                            core::kMaxPictureSide, root.Field("width"), &checks);
   picture.height =
@@ -194,6 +196,7 @@ RenderPlan ReadRenderPlan(const v1::StreamRenderRequest& request,
   plan.passes =
       ReadSize(request.passes(), kDefaultPasses, limits.max_render_passes,
                root.Field("passes"), &checks);
+  const bool knows_bands = violations->total() == before;
   if (request.has_bounces()) {
     checks.Integer(root.Field("bounces"), request.bounces(), 0,
                    core::kMaxBounces);
@@ -218,7 +221,9 @@ RenderPlan ReadRenderPlan(const v1::StreamRenderRequest& request,
       UsualGround(), prefix + "ground_material.", violations);
   plan.final_only = request.final_only();
   plan.first_band = request.first_band();
-  checks.Integer(root.Field("first_band"), plan.first_band, 0, plan.bands());
+  checks.Integer(
+      root.Field("first_band"), plan.first_band, 0,
+      knows_bands ? plan.bands() : std::numeric_limits<std::int64_t>::max());
   return plan;
 }
 

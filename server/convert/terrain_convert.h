@@ -40,16 +40,13 @@ struct ReadRecipe {
   std::string crs;
   // The id of each raster that the spec holds.
   std::map<const core::Raster*, std::string> raster_ids;
-  // The first raster, and the spot table, that the sources do not keep; the
-  // spec has none in its place and is not checked.
+  // The first raster, and the spot table, that the sources do not keep: no
+  // violations, as they can be uploaded. The spec has none in their places; all
+  // else in it is checked.
   std::string missing_raster;
   std::string missing_spot_table;
   // The id of the spec's spot table.
   std::string spot_table_id;
-
-  bool complete() const {
-    return missing_raster.empty() && missing_spot_table.empty();
-  }
 };
 
 // Converts and checks (core::ValidateSpec) a recipe. `prefix` stands before the

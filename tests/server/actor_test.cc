@@ -228,6 +228,63 @@ TEST_F(ActorTest, UnknownNamesHaveAReason) {
             absl::StatusCode::kNotFound);
 }
 
+// What is not there can be uploaded or renamed; what is wrong comes first.
+TEST_F(ActorTest, WhatIsMissingHidesNoViolation) {
+  const auto fields = [this](const std::string& json) {
+    std::vector<std::string> found;
+    for (const core::Violation& one : core::ViolationsOf(OpenError(json))) {
+      found.push_back(one.field);
+    }
+    return found;
+  };
+  EXPECT_THAT(
+      fields(R"({"terrain": {"preset": "no/such"}, "level": 99,
+                         "encoding": 9, "window": {"width": -1}})"),
+      ElementsAre("level", "window.width", "window.height", "encoding"));
+  const std::string raster = R"("macro": {"parts": [{"raster": {"rasterId":
+    "sha256:0"}}]})";
+  EXPECT_THAT(
+      fields(R"({"terrain": {"recipe": {"roughness": 2, )" + raster + "}}}"),
+      ElementsAre("terrain.recipe.roughness"));
+  EXPECT_THAT(fields(R"({"terrain": {"recipe": {"refinement": {}, )" + raster +
+                     R"(}}, "firstTile": -1})"),
+              ElementsAre("first_tile"));
+  EXPECT_THAT(
+      fields(R"({"terrain": {"recipe": {"spots": {"tableId": "sha256:1"},
+                 "domain": {"cellsX": "4", "cellsY": "4"}}},
+                 "window": {"x": 7, "width": 1, "height": 1}})"),
+      ElementsAre("window.x"));
+  const auto profile = actor_->GetProfile(
+      FromJson<v1::GetProfileRequest>(
+          R"({"terrain": {"preset": "no/such"}, "level": -1})"),
+      {});
+  EXPECT_THAT(core::ViolationsOf(profile.status()), testing::SizeIs(1));
+  const auto heights = actor_->GetHeights(
+      FromJson<v1::GetHeightsRequest>(
+          R"({"terrain": {"preset": "no/such"}, "level": -1})"),
+      {});
+  EXPECT_THAT(core::ViolationsOf(heights.status()), testing::SizeIs(1));
+}
+
+TEST_F(ActorTest, ACheckedWindowIsWhatOpens) {
+  const std::string terrain = R"("terrain": {"recipe": {"domain": {"cellsX":
+    "4", "cellsY": "3"}, "spots": {"level": 0, "points":
+    [{"x": 2, "y": 3, "height": 4}]}}})";
+  const auto request =
+      FromJson<v1::StreamTilesRequest>("{" + terrain + R"(, "level": 2})");
+  const auto window = actor_->CheckTiles(request);
+  ASSERT_TRUE(window.ok()) << window.status();
+  EXPECT_EQ(window->width(), 17);
+  EXPECT_EQ(window->height(), 13);
+  EXPECT_EQ(
+      (*actor_->OpenTiles(request, {}))->header().window().SerializeAsString(),
+      window->SerializeAsString());
+  EXPECT_THAT(
+      core::ViolationsOf(
+          actor_->CheckTiles(FromJson<v1::StreamTilesRequest>("{}")).status()),
+      testing::SizeIs(1));
+}
+
 TEST_F(ActorTest, RecipeAndRequestViolationsComeTogether) {
   const absl::Status status =
       OpenError(R"({"terrain": {"recipe": {"roughness": 1.7}},

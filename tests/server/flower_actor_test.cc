@@ -202,6 +202,31 @@ TEST_F(FlowerActorTest, TooManyAndTooFewAreRefused) {
                            .status()));
 }
 
+TEST_F(FlowerActorTest, NoFieldHidesAnother) {
+  EXPECT_THAT(Fields(R"({"flower": {"preset": "flower/nothing", "plants": 0},
+                         "firstPart": "-1"})"),
+              ElementsAre("flower.plants", "first_part"));
+  EXPECT_THAT(Fields(R"({"flower": {"preset": "flower/rose", "stage": 2},
+                         "firstPart": "-1"})"),
+              ElementsAre("flower.preset.stage", "first_part"));
+}
+
+// Once it was asked to stop, nothing is made, but all is checked all the same.
+TEST_F(FlowerActorTest, APartThatThereIsNotIsRefusedBeforeWork) {
+  std::stop_source stop;
+  stop.request_stop();
+  const auto open = [&](const std::string& first) {
+    return flowers()
+        .Open(FromJson<v1::StreamFlowerRequest>(std::string("{") + kBed +
+                                                R"(, "firstPart": ")" + first +
+                                                "\"}"),
+              stop.get_token())
+        .status();
+  };
+  EXPECT_TRUE(absl::IsInvalidArgument(open("99"))) << open("99");
+  EXPECT_TRUE(absl::IsCancelled(open("0"))) << open("0");
+}
+
 TEST_F(FlowerActorTest, StopEndsARun) {
   auto run = flowers().Open(FromJson<v1::StreamFlowerRequest>(
       R"({"flower": {"recipe": {"solids": [{}], "bed": {"plants": 1000000}}}})"));

@@ -221,7 +221,15 @@ TEST_F(RenderActorTest, AnEstimateHasTheViolationsToo) {
                   "request.tree.tree.recipe.depth"},
         std::pair{R"("terrain": {"terrain": {"preset": "demo/hills"},
                      "window": {"width": "9", "height": "9"}, "level": 99})",
-                  "request.terrain.level"}}) {
+                  "request.terrain.level"},
+        std::pair{R"("terrain": {"terrain": {"preset": "demo/hills"},
+                     "window": {"width": "1", "height": "9"}})",
+                  "request.terrain.window"},
+        // So many faces that counting their bytes would overflow.
+        std::pair{R"("tree": {"tree": {"recipe": {"form":
+                     "TREE_FORM_PLAIN", "depth": 22}},
+                     "tubes": {"sides": 2147483647}})",
+                  "request.tree.tubes.sides"}}) {
     *asked.mutable_request() = Asked(subject, R"("seed": 1)");
     const auto estimate = actor_->renders().Estimate(asked);
     const auto violations = core::ViolationsOf(estimate.status());
@@ -278,6 +286,48 @@ TEST_F(RenderActorTest, StopsWhenAsked) {
   }
   stop.request_stop();
   EXPECT_TRUE(absl::IsCancelled((*run)->Next(stop.get_token(), &message)));
+}
+
+// Once it was asked to stop, no scene is made, but all is checked all the same.
+TEST_F(RenderActorTest, EverythingIsCheckedBeforeASceneIsMade) {
+  std::stop_source stop;
+  stop.request_stop();
+  const auto open = [&](const std::string& subject, const std::string& more) {
+    return actor_->renders()
+        .Open(Asked(subject, more), stop.get_token())
+        .status();
+  };
+  const auto terrain = [](const std::string& width) {
+    return R"("terrain": {"terrain": {"recipe": {"seed": "99"}},
+              "window": {"height": "5000", "width": ")" +
+           width + "\"}}";
+  };
+  const std::string valid = R"("width": 8)";
+  EXPECT_TRUE(absl::IsCancelled(open(terrain("9"), valid)));
+  EXPECT_TRUE(absl::IsInvalidArgument(open(terrain("9"), R"("width": -1)")));
+  EXPECT_TRUE(absl::IsInvalidArgument(open(terrain("1"), valid)));
+  EXPECT_TRUE(absl::IsResourceExhausted(open(terrain("5000"), valid)));
+  const auto flower = [](const std::string& plants) {
+    return R"("flower": {"flower": {"preset": "flower/daisy", "plants": )" +
+           plants + "}}";
+  };
+  EXPECT_TRUE(absl::IsCancelled(open(flower("1"), valid)));
+  EXPECT_TRUE(absl::IsInvalidArgument(open(flower("1"), R"("width": -1)")));
+  EXPECT_TRUE(absl::IsResourceExhausted(open(flower("100000"), valid)));
+}
+
+TEST_F(RenderActorTest, UnknownPresetsHideNoViolation) {
+  EXPECT_THAT(FieldsOf(Asked(R"("tree": {"tree": {"preset": "tree/none"},
+                                "tubes": {"sides": 2}})",
+                             R"("width": -1)")),
+              ElementsAre("width", "tree.tubes.sides"));
+  EXPECT_THAT(FieldsOf(Asked(R"("terrain": {"terrain": {"preset": "none"},
+                                "window": {"width": 9, "height": -9}})",
+                             R"("passes": -1)")),
+              ElementsAre("passes", "terrain.window.height"));
+  // How many bands there are is not known.
+  EXPECT_THAT(FieldsOf(Asked(kSurface, R"("passes": -1, "firstBand": "99")")),
+              ElementsAre("passes"));
 }
 
 TEST_F(RenderActorTest, UnknownPresetsAreNotFound) {

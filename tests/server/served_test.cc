@@ -97,12 +97,14 @@ TEST_F(ServedTest, UnknownNamesComeAsErrorInfo) {
   ASSERT_TRUE(info.ParseFromString(Details(status).details(0).value()));
   EXPECT_EQ(info.reason(), "PRESET_NOT_FOUND");
   Stream(R"({"terrain": {"recipe": {"macro": {"parts":
-    [{"raster": {"rasterId": "sha256:0"}}]}}}})",
+    [{"raster": {"rasterId": "sha256:0"}}]}}},
+    "window": {"width": 1, "height": 1}})",
          &status);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
   ASSERT_TRUE(info.ParseFromString(Details(status).details(0).value()));
   EXPECT_EQ(info.reason(), "RASTER_NOT_FOUND");
-  Stream(R"({"terrain": {"recipe": {"spots": {"tableId": "sha256:1"}}}})",
+  Stream(R"({"terrain": {"recipe": {"spots": {"tableId": "sha256:1"}}},
+    "window": {"width": 1, "height": 1}})",
          &status);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
   ASSERT_TRUE(info.ParseFromString(Details(status).details(0).value()));

@@ -151,8 +151,12 @@ TEST_F(SurfaceActorTest, EstimatesCountTheTilesThatAreLeft) {
 TEST_F(SurfaceActorTest, ErrorsNameTheField) {
   EXPECT_THAT(Error(R"({"columns": 9, "rows": 9})"),
               HasSubstr("surface: must hold a recipe or a preset"));
-  EXPECT_THAT(Error(R"({"surface": {"preset": "surface/none"}})"),
+  EXPECT_THAT(Error(R"({"surface": {"preset": "surface/none"},
+                        "columns": 9, "rows": 9})"),
               HasSubstr("no preset is called \"surface/none\""));
+  EXPECT_EQ(Error(R"({"surface": {"preset": "surface/none"}, "columns": 9,
+                      "rows": 9, "firstTile": -1})"),
+            "first_tile: must be in [0, 1], got -1");
   EXPECT_THAT(Error(R"({"surface": {"recipe": {}}, "columns": 9, "rows": 9})"),
               HasSubstr("surface.recipe.net.columns: must be in [2, 64]"));
   EXPECT_THAT(Error(R"({"surface": {"recipe": {"net": {

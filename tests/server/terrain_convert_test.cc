@@ -180,7 +180,6 @@ TEST_F(TerrainConvertTest, MissingSpotTableIsNamedAndNotAViolation) {
   const ReadRecipe read = Read(R"({"spots": {"tableId": "sha256:gone"}})");
   EXPECT_THAT(violations_.kept(), IsEmpty());
   EXPECT_EQ(read.missing_spot_table, "sha256:gone");
-  EXPECT_FALSE(read.complete());
 }
 
 TEST_F(TerrainConvertTest, TooManyInlineSpotsAreNotEvenConverted) {
@@ -317,6 +316,32 @@ TEST_F(TerrainConvertTest, MissingRasterIsNamedAndNotAViolation) {
      {"raster": {"rasterId": "sha256:lost"}}]}})");
   EXPECT_THAT(violations_.kept(), IsEmpty());
   EXPECT_EQ(read.missing_raster, "sha256:gone");
+}
+
+// What is not kept can be uploaded; what is wrong cannot.
+TEST_F(TerrainConvertTest, MissingContentHidesNoViolation) {
+  const ReadRecipe read = Read(R"({"roughness": 2, "refinement": {},
+    "macro": {"parts": [{"raster": {"rasterId": "sha256:gone"}}]},
+    "spots": {"tableId": "sha256:gone", "points": [{"height": "NaN"}],
+              "lines": [{"vertices": [{}, {"x": 1e9}]}]}})");
+  EXPECT_THAT(
+      violations_.kept(),
+      ElementsAre(Field(&core::Violation::field, "terrain.recipe.roughness"),
+                  Field(&core::Violation::field,
+                        "terrain.recipe.spots.points[0].height")));
+  EXPECT_EQ(read.missing_raster, "sha256:gone");
+  EXPECT_EQ(read.missing_spot_table, "sha256:gone");
+}
+
+TEST_F(TerrainConvertTest, AMissingModelsLatticeIsNotGuessedAt) {
+  Read(R"({"refinement": {}, "domain": {"cellsX": "7", "cellsY": "7"},
+    "macro": {"parts": [{"raster": {"rasterId": "sha256:gone"}}]},
+    "spots": {"level": 9, "lines": [{"vertices": [{}, {"x": 7, "y": 7}]}]}})");
+  EXPECT_THAT(violations_.kept(), IsEmpty());
+  Read(R"({"refinement": {}, "spots": {"lines": [{"vertices":
+    [{}, {"x": 1e9}]}]},
+    "macro": {"parts": [{"raster": {"rasterId": "sha256:gone"}}]}})");
+  EXPECT_THAT(violations_.kept(), IsEmpty());
 }
 
 TEST_F(TerrainConvertTest, RasterWithoutIdIsAViolation) {

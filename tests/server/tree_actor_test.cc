@@ -281,6 +281,21 @@ TEST_F(TreeActorTest, WhatIsNotThereIsSaid) {
               ElementsAre("leaves", "trees"));
 }
 
+// A wrong field hides none of the others, nor does an unknown preset.
+TEST_F(TreeActorTest, NoFieldHidesAnother) {
+  EXPECT_THAT(Fields(trees().OpenRows(FromJson<v1::StreamTreeRequest>(
+                  R"({"tree": {"preset": "tree/nothing"}, "fromRow": "-1"})"))),
+              ElementsAre("from_row"));
+  EXPECT_THAT(
+      Fields(trees().OpenMesh(FromJson<v1::StreamTreeMeshRequest>(
+          R"({"tree": {"preset": "tree/nothing"}, "tubes": {"sides": 2}})"))),
+      ElementsAre("tubes.sides"));
+  EXPECT_THAT(Fields(trees().OpenForest(FromJson<v1::StreamForestRequest>(
+                  R"({"tree": {"preset": "tree/nothing"}, "firstTree": "-1",
+                      "seeds": {"count": "0"}})"))),
+              ElementsAre("seeds.count", "first_tree"));
+}
+
 TEST_F(TreeActorTest, AnIndexBehindTheEndIsAViolationWhenTheTreeHasEnded) {
   auto run = trees().OpenRows(FromJson<v1::StreamTreeRequest>(
       R"({"tree": {"recipe": {"depth": 1}}, "fromRow": "5"})"));

@@ -51,13 +51,16 @@ class FlowerSceneSource : public SceneSource {
 OpenedScene OpenFlowerScene(const v1::FlowerSubject& subject,
                             const FlowerMaker& flowers,
                             const SceneRequest& request) {
-  auto flower = flowers.Choose(
+  const ChosenFlower chosen = flowers.Choose(
       subject.flower(), request.prefix + "flower.flower", request.violations);
-  if (!flower.ok()) return flower.status();
-  if (*flower == nullptr) return std::unique_ptr<SceneSource>();
-  const absl::Status size = CheckTriangles(
-      (*flower)->estimate().triangles + (*flower)->rows(), request.limits);
+  if (!chosen.missing.ok()) return chosen.missing;
+  if (!request.violations->empty()) return std::unique_ptr<SceneSource>();
+  const core::FlowerEstimate estimate = core::EstimateFlower(*chosen.spec);
+  const absl::Status size =
+      CheckTriangles(estimate.triangles + estimate.instances, request.limits);
   if (!size.ok()) return size;
+  auto flower = flowers.Make(*chosen.spec, request.stop);
+  if (!flower.ok()) return flower.status();
   return std::make_unique<FlowerSceneSource>(*std::move(flower));
 }
 

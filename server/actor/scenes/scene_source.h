@@ -51,8 +51,9 @@ struct SceneRequest {
   std::stop_token stop;
 };
 
-// Null when a violation was added. Errors other than violations: NOT_FOUND,
-// CANCELLED, RESOURCE_EXHAUSTED.
+// Null when there are violations, also those that were there before: then
+// nothing was made. Errors other than violations: NOT_FOUND, CANCELLED,
+// RESOURCE_EXHAUSTED.
 using OpenedScene = absl::StatusOr<std::unique_ptr<SceneSource>>;
 
 OpenedScene OpenTerrainScene(const v1::TerrainSubject& subject, Actor* actor,
@@ -66,8 +67,9 @@ OpenedScene OpenFlowerScene(const v1::FlowerSubject& subject,
                             const FlowerMaker& flowers,
                             const SceneRequest& request);
 
-// What the scene holds at most, without making any of it. Of no meaning when a
-// violation was added.
+// What the scene holds at most, without making any of it: at most 2^42 of
+// everything, so that bytes of them do not overflow. Of no meaning when there
+// are violations.
 using EstimatedScene = absl::StatusOr<core::SceneSize>;
 
 EstimatedScene EstimateTerrainScene(const v1::TerrainSubject& subject,

@@ -110,8 +110,8 @@ OpenedScene OpenSurfaceScene(const v1::SurfaceSubject& subject,
     const absl::Status moved = MoveViolations(
         job.status(), "", request.prefix + "surface.", request.violations);
     if (!moved.ok()) return moved;
-    return std::unique_ptr<SceneSource>();
   }
+  if (!request.violations->empty()) return std::unique_ptr<SceneSource>();
   const v1::SurfaceHeader& header = (*job)->header();
   const absl::Status checked = CheckTriangles(
       SizeOf(header.columns(), header.rows()).triangles, request.limits);

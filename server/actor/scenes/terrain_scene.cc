@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -207,34 +208,53 @@ v1::StreamTilesRequest StreamOf(const v1::TerrainSubject& subject) {
   return stream;
 }
 
+// What OpenTiles would open, checked before anything is made; nothing when the
+// request has violations.
+absl::StatusOr<std::optional<v1::Window>> CheckedWindow(
+    const v1::TerrainSubject& subject, Actor* actor,
+    const SceneRequest& request) {
+  CheckExaggeration(subject, request);
+  const std::string path = request.prefix + "terrain.";
+  auto window = actor->CheckTiles(StreamOf(subject));
+  if (!window.ok()) {
+    const absl::Status moved =
+        MoveViolations(window.status(), "", path, request.violations);
+    if (!moved.ok()) return moved;
+    return std::optional<v1::Window>();
+  }
+  if (window->width() < 2 || window->height() < 2) {
+    request.violations->Add(path + "window", "must be at least 2 x 2 samples");
+  }
+  if (!request.violations->empty()) return std::optional<v1::Window>();
+  return std::optional<v1::Window>(*std::move(window));
+}
+
 }  // namespace
 
 OpenedScene OpenTerrainScene(const v1::TerrainSubject& subject, Actor* actor,
                              const SceneRequest& request) {
-  CheckExaggeration(subject, request);
-  const std::string path = request.prefix + "terrain.";
+  const auto window = CheckedWindow(subject, actor, request);
+  if (!window.ok()) return window.status();
+  if (!window->has_value()) return std::unique_ptr<SceneSource>();
+  const absl::Status checked = CheckTriangles(
+      2 * ((*window)->width() - 1) * ((*window)->height() - 1), request.limits);
+  if (!checked.ok()) return checked;
   const auto job = actor->OpenTiles(StreamOf(subject), request.stop);
   if (!job.ok()) {
-    const absl::Status moved =
-        MoveViolations(job.status(), "", path, request.violations);
+    const absl::Status moved = MoveViolations(
+        job.status(), "", request.prefix + "terrain.", request.violations);
     if (!moved.ok()) return moved;
     return std::unique_ptr<SceneSource>();
   }
-  const v1::Window& window = (*job)->header().window();
-  if (window.width() < 2 || window.height() < 2) {
-    request.violations->Add(path + "window", "must be at least 2 x 2 samples");
-    return std::unique_ptr<SceneSource>();
-  }
-  const absl::Status checked = CheckTriangles(
-      2 * (window.width() - 1) * (window.height() - 1), request.limits);
-  if (!checked.ok()) return checked;
   return std::make_unique<TerrainScene>(
       *job, subject.has_exaggeration() ? subject.exaggeration() : 1);
 }
 
 EstimatedScene EstimateTerrainScene(const v1::TerrainSubject& subject,
                                     Actor* actor, const SceneRequest& request) {
-  CheckExaggeration(subject, request);
+  const auto window = CheckedWindow(subject, actor, request);
+  if (!window.ok()) return window.status();
+  if (!window->has_value()) return core::SceneSize();
   v1::EstimateTilesRequest asked;
   *asked.mutable_request() = StreamOf(subject);
   const auto estimate = actor->EstimateTiles(asked);

@@ -9,6 +9,7 @@
 #include "server/actor/scenes/scene_source.h"
 #include "server/convert/non_zero.h"
 #include "server/convert/render_convert.h"
+#include "server/convert/tree_convert.h"
 
 namespace terrane::server {
 namespace {
@@ -173,14 +174,13 @@ OpenedScene OpenTreeScene(const v1::TreeSubject& subject,
     const absl::Status moved =
         MoveViolations(tube_run.status(), "", path, request.violations);
     if (!moved.ok()) return moved;
-    return std::unique_ptr<SceneSource>();
   }
+  if (!request.violations->empty()) return std::unique_ptr<SceneSource>();
   // Valid, as the tubes could be opened.
-  const auto chosen =
+  const ChosenTree chosen =
       trees.Choose(subject.tree(), path + "tree", request.violations);
-  if (!chosen.ok()) return chosen.status();
   TreeScene::Leaves leaf_run;
-  if (chosen->tree->spec().leaves.has_value()) {
+  if (chosen.tree->spec().leaves.has_value()) {
     v1::StreamTreeLeavesRequest leaves;
     *leaves.mutable_tree() = subject.tree();
     auto opened = trees.OpenLeaves(leaves);
@@ -196,6 +196,8 @@ EstimatedScene EstimateTreeScene(const v1::TreeSubject& subject,
                                  const TreeMaker& trees,
                                  const SceneRequest& request) {
   LookOf(subject, request);
+  const core::TubeSpec tubes = ReadTubeOptions(
+      subject.tubes(), request.prefix + "tree.tubes.", request.violations);
   v1::EstimateTreeRequest asked;
   *asked.mutable_tree() = subject.tree();
   const auto estimate = trees.Estimate(asked);
@@ -205,8 +207,7 @@ EstimatedScene EstimateTreeScene(const v1::TreeSubject& subject,
     if (!moved.ok()) return moved;
     return core::SceneSize();
   }
-  const std::int64_t sides =
-      std::max<std::int64_t>(subject.tubes().sides(), kUsualSides);
+  const std::int64_t sides = std::max<std::int64_t>(tubes.sides, kUsualSides);
   const std::int64_t triangles =
       kTrianglesOfRow * sides / kUsualSides * estimate->segments_most();
   return core::SceneSize{triangles, triangles, estimate->leaves_most()};
