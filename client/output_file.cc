@@ -1,26 +1,29 @@
 #include "client/output_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <random>
 #include <system_error>
 #include <utility>
 
 namespace terrane::client {
 namespace {
 
-// Hidden beside the final name, so that a rename never crosses file systems;
-// the process number keeps two exports apart.
+// Hidden beside the final name, so that a rename never crosses file systems.
+// Chance keeps writers of the same file apart: on storage that several machines
+// share, process numbers would not.
 std::string TemporaryName(const std::string& path) {
   const std::filesystem::path final_path(path);
-  std::string name(1, '.');
-  name += final_path.filename().string();
-  name += ".partial-";
-  name += std::to_string(getpid());
+  std::random_device chance;
+  const std::string name =
+      fmt::format(".{}.partial-{:08x}{:08x}", final_path.filename().string(),
+                  chance(), chance());
   return (final_path.parent_path() / name).string();
 }
 
@@ -38,8 +41,8 @@ absl::StatusOr<OutputFile> OutputFile::Create(std::string path) {
                                       ": it is a folder");
   }
   std::string temporary_path = TemporaryName(path);
-  const int descriptor = open(temporary_path.c_str(),
-                              O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int descriptor =
+      open(temporary_path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return ErrnoStatus("cannot create", path);
   return OutputFile(std::move(path), std::move(temporary_path), descriptor);
 }
@@ -125,6 +128,19 @@ absl::Status WriteFile(const std::string& path,
   const absl::Status status = file->WriteAt(0, bytes);
   if (!status.ok()) return status;
   return file->Commit();
+}
+
+absl::Status FlushFolderOf(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const int descriptor = open(folder.empty() ? "." : folder.c_str(),
+                              O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return absl::OkStatus();
+  absl::Status status;
+  if (fsync(descriptor) != 0 && errno != EINVAL) {
+    status = ErrnoStatus("cannot flush the folder of", path);
+  }
+  close(descriptor);
+  return status;
 }
 
 }  // namespace terrane::client

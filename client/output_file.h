@@ -1,9 +1,13 @@
 // OutputFile: a file that appears under its name only when it is whole.
 //
-// Written under a temporary name in the same folder; Commit flushes it to the
-// disk and renames it. Without a Commit (an error, a full disk, an interrupt)
-// the destructor removes the temporary file, and whatever had the name before
-// stays.
+// Written under a temporary name in the same folder (.NAME.partial- and
+// chance), with the rights that the umask leaves; Commit flushes it to the disk
+// and renames it. Without a Commit (an error, a full disk, an interrupt) the
+// destructor removes the temporary file, and whatever had the name before
+// stays. Only a crash leaves a temporary file behind.
+//
+// Any number of processes, on any machines, may write the same name at a time:
+// it is always one of theirs, whole.
 //
 // Belongs to one thread. Errors name the final path and the system's reason.
 #ifndef TERRANE_CLIENT_OUTPUT_FILE_H_
@@ -53,6 +57,12 @@ class OutputFile {
 // Writes a whole file in one go.
 absl::Status WriteFile(const std::string& path,
                        std::span<const std::byte> bytes);
+
+// Makes the names of all files in the folder of `path` outlast a crash of the
+// system, too. It takes as long as the flush of a file. A folder that may not
+// be read and a file system that cannot do this leave the names as safe as they
+// make them.
+absl::Status FlushFolderOf(const std::string& path);
 
 }  // namespace terrane::client
 
