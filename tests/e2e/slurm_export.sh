@@ -8,14 +8,15 @@
 set -euo pipefail
 
 terrane="$(realpath "$1")"
-skip() {
-  echo "SKIPPED, NOTHING WAS CHECKED: $1" >&2
-  exit 77
-}
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+# shellcheck source=tests/e2e/shards.sh
+source "${here}/shards.sh"
+slurm=(munged slurmctld slurmd sinfo sbatch)
+
 [[ "$(id -u)" == 0 ]] || skip "only root can run slurmd."
-if ! command -v slurmctld slurmd munged sbatch >/dev/null; then
+if [[ -n "$(missing_commands "${slurm[@]}")" ]]; then
   [[ "${TERRANE_HEAVY:-0}" == 1 ]] || skip "there is no Slurm on this machine, and TERRANE_HEAVY=1 is not set."
-  apt-get install --yes --no-install-recommends slurm-wlm munge >/dev/null
+  "${here}/../../deploy/install-packages.sh" apt-packages-heavy.txt
 fi
 
 folder="$(mktemp -d)"
@@ -86,12 +87,8 @@ pids+=($!)
 node_is_idle() { [[ "$(sinfo --noheader --format=%t)" == idle ]]; }
 wait_for node_is_idle || fail "the node does not come up"
 
-choice=(--preset fbm/fig06b --level 7 --tile-size 33 "--tiles=0,0,5,4" --local --threads 1)
 sbatch --wait --array=0-3 --output="${folder}/job-%a.log" --wrap \
   "'${terrane}' export ${choice[*]} --out '${folder}/parts/tile.tif' --shards 4 --shard \${SLURM_ARRAY_TASK_ID}" ||
   fail "the array fails"
-"${terrane}" export --verify --out "${folder}/parts/tile.tif" --shards 4
-"${terrane}" export "${choice[@]}" --out "${folder}/whole/tile.tif"
-rm "${folder}"/parts/*.json "${folder}"/whole/*.json
-diff --recursive "${folder}/parts" "${folder}/whole"
+check_parts "${terrane}" "${folder}"
 echo "A Slurm array of 4 shards wrote the 20 tiles that one process writes."
