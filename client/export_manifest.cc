@@ -49,13 +49,15 @@ class TileList {
            std::vector<std::string>* faults)
       : manifest_(manifest), path_(path), faults_(faults) {}
 
-  void Check(const TileRun& run) const {
+  // Error: CANCELLED when `stop` is asked for.
+  absl::Status Check(const TileRun& run, std::stop_token stop) const {
     const ExportJob& job = manifest_.job();
     const auto columns = static_cast<std::int64_t>(job.tile_columns());
     const std::string folder =
         std::filesystem::path(path_).parent_path().string();
     auto tile = manifest_.tiles().begin();
     for (std::int64_t i = run.first; i < run.end; ++i) {
+      if (stop.stop_requested()) return absl::CancelledError("interrupted");
       const double x = job.tile_x() + static_cast<double>(i % columns);
       const double y = job.tile_y() + static_cast<double>(i / columns);
       if (tile == manifest_.tiles().end() || tile->x() != x || tile->y() != y) {
@@ -68,6 +70,7 @@ class TileList {
     if (tile != manifest_.tiles().end()) {
       faults_->push_back(path_ + ": holds tiles of other shards");
     }
+    return absl::OkStatus();
   }
 
  private:
@@ -79,6 +82,23 @@ class TileList {
   const std::string& path_;
   std::vector<std::string>* const faults_;
 };
+
+// What is wrong with the job of a manifest of the export to `out`; `first` is
+// that of the first of its manifests. Empty: nothing.
+std::string JobFault(const ExportJob& job, const ExportJob& first,
+                     const std::string& out) {
+  const std::string file = std::filesystem::path(out).filename().string();
+  if (job.file() != file) {
+    return fmt::format("is of tiles of the name {}, not {}", job.file(), file);
+  }
+  if (!(job.tile_columns() >= 1 && job.tile_rows() >= 1)) {
+    return "is of a job without tiles";
+  }
+  if (!MessageDifferencer::Equals(job, first)) {
+    return "is of another job than the shard before it";
+  }
+  return "";
+}
 
 void Count(const ExportManifest& manifest, ExportSummary* summary) {
   for (const ExportTile& tile : manifest.tiles()) {
@@ -94,7 +114,7 @@ void Count(const ExportManifest& manifest, ExportSummary* summary) {
 std::string ManifestPath(const std::string& out, std::int64_t shard,
                          std::int64_t shards) {
   std::filesystem::path path(out);
-  std::string name = path.stem().string();
+  std::string name = path.filename().string();
   std::erase_if(name, [](char c) { return c == '{' || c == '}'; });
   return path
       .replace_filename(
@@ -125,7 +145,8 @@ absl::Status WriteManifest(const std::string& path,
   const auto status =
       google::protobuf::util::MessageToJsonString(manifest, &text, options);
   if (!status.ok()) return absl::InternalError(status.message().ToString());
-  return WriteFile(path, std::as_bytes(std::span(text)));
+  const absl::Status written = WriteFile(path, std::as_bytes(std::span(text)));
+  return written.ok() ? FlushFolderOf(path) : written;
 }
 
 absl::StatusOr<ExportFile> DescribeFile(const std::string& path) {
@@ -147,9 +168,10 @@ bool IsThere(const std::string& folder, const ExportTile& tile) {
   return tile.files_size() > 0;
 }
 
-std::vector<std::string> VerifyExport(const std::string& out,
-                                      std::int64_t shards,
-                                      ExportSummary* summary) {
+absl::StatusOr<std::vector<std::string>> VerifyExport(const std::string& out,
+                                                      std::int64_t shards,
+                                                      std::stop_token stop,
+                                                      ExportSummary* summary) {
   std::vector<std::string> faults;
   std::optional<ExportJob> job;
   for (std::int64_t shard = 0; shard < shards; ++shard) {
@@ -161,14 +183,18 @@ std::vector<std::string> VerifyExport(const std::string& out,
     }
     summary->add_manifests(path);
     if (!job.has_value()) job = manifest->job();
-    const double tiles = job->tile_columns() * job->tile_rows();
-    if (!MessageDifferencer::Equals(*job, manifest->job()) || tiles < 1) {
-      faults.push_back(path + ": is of another job than the shard before it");
+    const std::string fault = JobFault(manifest->job(), *job, out);
+    if (!fault.empty()) {
+      faults.push_back(path + ": " + fault);
       continue;
     }
+    const auto tiles =
+        static_cast<std::int64_t>(job->tile_columns() * job->tile_rows());
     const std::size_t before = faults.size();
-    TileList(*manifest, path, &faults)
-        .Check(ShardOf(static_cast<std::int64_t>(tiles), shards, shard));
+    const absl::Status checked =
+        TileList(*manifest, path, &faults)
+            .Check(ShardOf(tiles, shards, shard), stop);
+    if (!checked.ok()) return checked;
     if (faults.size() == before) Count(*manifest, summary);
   }
   if (job.has_value()) {

@@ -8,6 +8,7 @@
 #define TERRANE_CLIENT_EXPORT_MANIFEST_H_
 
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -17,12 +18,14 @@
 
 namespace terrane::client {
 
-// NAME.shard-I-of-N.json beside the tiles of NAME.EXTENSION, I from 0.
+// NAME.EXTENSION.shard-I-of-N.json beside the tiles of NAME.EXTENSION, I from
+// 0.
 std::string ManifestPath(const std::string& out, std::int64_t shard,
                          std::int64_t shards);
 
 // Errors: NOT_FOUND when there is none, INVALID_ARGUMENT when it is none.
 absl::StatusOr<ExportManifest> ReadManifest(const std::string& path);
+// And makes the names of the tiles outlast a crash of the system.
 absl::Status WriteManifest(const std::string& path,
                            const ExportManifest& manifest);
 
@@ -32,12 +35,14 @@ absl::StatusOr<ExportFile> DescribeFile(const std::string& path);
 // Whether the files of a tile lie in `folder` with the bytes that it names.
 bool IsThere(const std::string& folder, const ExportTile& tile);
 
-// What is wrong with an export, a line each: manifests missing or of another
-// job, tiles that are not listed or not there. Empty when all of its tiles are
-// there. Adds what was read to `summary`.
-std::vector<std::string> VerifyExport(const std::string& out,
-                                      std::int64_t shards,
-                                      ExportSummary* summary);
+// What is wrong with the export to `out`, a line each: manifests missing or of
+// another job, tiles that are not listed or not there. Empty when all of its
+// tiles are there. Adds what was read to `summary`. Error: CANCELLED when
+// `stop` is asked for, which is looked at before each tile.
+absl::StatusOr<std::vector<std::string>> VerifyExport(const std::string& out,
+                                                      std::int64_t shards,
+                                                      std::stop_token stop,
+                                                      ExportSummary* summary);
 
 }  // namespace terrane::client
 

@@ -1,7 +1,9 @@
 #include "client/export_shard.h"
 
+#include <fmt/format.h>
 #include <google/protobuf/util/message_differencer.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <utility>
@@ -10,11 +12,10 @@
 #include "client/tile_shard.h"
 
 namespace terrane::client {
-namespace {
 
-constexpr std::chrono::seconds kSaveInterval{1};
-
-}  // namespace
+std::chrono::nanoseconds WaitAfterSave(std::chrono::nanoseconds cost) {
+  return std::max<std::chrono::nanoseconds>(std::chrono::seconds(1), cost * 20);
+}
 
 ExportShard::ExportShard(std::string path, ExportJob job, std::int64_t shard,
                          v1::StreamTilesRequest request,
@@ -30,7 +31,9 @@ ExportShard::ExportShard(std::string path, ExportJob job, std::int64_t shard,
 
 absl::Status ExportShard::Run(ProgressMode progress, Backend* backend,
                               std::stop_token stop) {
-  const absl::Status made = Make(Missing(), progress, backend, stop);
+  const absl::StatusOr<std::vector<std::int64_t>> missing = Missing(stop);
+  if (!missing.ok()) return missing.status();
+  const absl::Status made = Make(*missing, progress, backend, stop);
   const absl::Status saved = Save();
   return made.ok() ? saved : made;
 }
@@ -51,10 +54,12 @@ ExportSummary ExportShard::Summary() const {
   return summary;
 }
 
-std::vector<std::int64_t> ExportShard::Missing() {
+absl::StatusOr<std::vector<std::int64_t>> ExportShard::Missing(
+    std::stop_token stop) {
   const absl::StatusOr<ExportManifest> before = ReadManifest(manifest_path_);
   if (before.ok()) {
-    TakeOver(*before);
+    const absl::Status taken = TakeOver(*before, stop);
+    if (!taken.ok()) return taken;
   } else if (!absl::IsNotFound(before.status())) {
     std::cerr << "terrane: " << before.status().message()
               << "; every tile is made anew\n";
@@ -68,17 +73,20 @@ std::vector<std::int64_t> ExportShard::Missing() {
   return missing;
 }
 
-void ExportShard::TakeOver(const ExportManifest& before) {
+absl::Status ExportShard::TakeOver(const ExportManifest& before,
+                                   std::stop_token stop) {
   if (!google::protobuf::util::MessageDifferencer::Equals(before.job(), job_)) {
     std::cerr << "terrane: " << manifest_path_
               << " is of another job; every tile is made anew\n";
-    return;
+    return absl::OkStatus();
   }
   for (const ExportTile& tile : before.tiles()) {
+    if (stop.stop_requested()) return absl::CancelledError("interrupted");
     if (!IsThere(folder_, tile)) continue;
     tiles_[IndexOf(static_cast<std::int64_t>(tile.x()),
                    static_cast<std::int64_t>(tile.y()))] = tile;
   }
+  return absl::OkStatus();
 }
 
 absl::Status ExportShard::Make(const std::vector<std::int64_t>& missing,
@@ -89,9 +97,7 @@ absl::Status ExportShard::Make(const std::vector<std::int64_t>& missing,
     *request_.mutable_tiles() = rectangle;
     const absl::Status status = backend->StreamTiles(
         request_,
-        [&](const v1::StreamHeader& header) {
-          return files_.AddHeader(header);
-        },
+        [&](const v1::StreamHeader& header) { return AddHeader(header); },
         [&](const v1::HeightTile& tile) {
           if (stop.stop_requested()) return absl::CancelledError("interrupted");
           progress.Advance(1);
@@ -101,6 +107,18 @@ absl::Status ExportShard::Make(const std::vector<std::int64_t>& missing,
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
+}
+
+absl::Status ExportShard::AddHeader(const v1::StreamHeader& header) {
+  if (header.recipe_hash() != job_.recipe_hash() ||
+      header.revision() != job_.revision()) {
+    return absl::FailedPreconditionError(fmt::format(
+        "the server's tiles are of recipe {} at revision {}, those of this job "
+        "of recipe {} at revision {}",
+        header.recipe_hash(), header.revision(), job_.recipe_hash(),
+        job_.revision()));
+  }
+  return files_.AddHeader(header);
 }
 
 absl::Status ExportShard::Add(const v1::HeightTile& tile) {
@@ -119,11 +137,11 @@ absl::Status ExportShard::Add(const v1::HeightTile& tile) {
   }
   tiles_[IndexOf(tile.tile_x(), tile.tile_y())] = std::move(made);
   ++made_;
-  return Clock::now() - saved_ < kSaveInterval ? absl::OkStatus() : Save();
+  return Clock::now() < next_save_ ? absl::OkStatus() : Save();
 }
 
 absl::Status ExportShard::Save() {
-  saved_ = Clock::now();
+  const Clock::time_point start = Clock::now();
   ExportManifest manifest;
   *manifest.mutable_job() = job_;
   manifest.set_shard(static_cast<double>(shard_));
@@ -132,7 +150,10 @@ absl::Status ExportShard::Save() {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);  // WriteFile tells
   }
-  return WriteManifest(manifest_path_, manifest);
+  absl::Status status = WriteManifest(manifest_path_, manifest);
+  const Clock::time_point end = Clock::now();
+  next_save_ = end + WaitAfterSave(end - start);
+  return status;
 }
 
 std::int64_t ExportShard::IndexOf(std::int64_t x, std::int64_t y) const {

@@ -1,9 +1,9 @@
 // ExportShard: one shard of an export at work, one file a tile.
 //
 // It takes over the tiles that an earlier run has made
-// (client/export_manifest.h) and makes the others. Its manifest is written
-// about once a second and at the end, whatever the end: an interrupt or a full
-// disk costs the tile in work, a crash what was made since. Belongs to one
+// (client/export_manifest.h) and makes the others. Its manifest is written now
+// and then (WaitAfterSave) and at the end, whatever the end: an interrupt or a
+// full disk costs the tile in work, a crash what was made since. Belongs to one
 // thread.
 #ifndef TERRANE_CLIENT_EXPORT_SHARD_H_
 #define TERRANE_CLIENT_EXPORT_SHARD_H_
@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "client/backend.h"
 #include "client/export_manifest.h"
 #include "client/progress.h"
@@ -24,6 +25,11 @@
 
 namespace terrane::client {
 
+// How long a shard works after it has written its manifest, which took `cost`,
+// until it does so again. The manifest grows with the shard: this keeps it to a
+// twentieth of the time.
+std::chrono::nanoseconds WaitAfterSave(std::chrono::nanoseconds cost);
+
 class ExportShard {
  public:
   // `request` asks for the tiles of all shards, of which `job` has as many as
@@ -31,7 +37,9 @@ class ExportShard {
   ExportShard(std::string path, ExportJob job, std::int64_t shard,
               v1::StreamTilesRequest request, const SinkOptions& options);
 
-  // Errors: those of the backend and of the files.
+  // Errors: those of the backend and of the files; CANCELLED when `stop` is
+  // asked for; FAILED_PRECONDITION when tiles come of another recipe or
+  // revision than the job's, as from a server that is being replaced.
   absl::Status Run(ProgressMode progress, Backend* backend,
                    std::stop_token stop);
 
@@ -42,10 +50,11 @@ class ExportShard {
   using Clock = std::chrono::steady_clock;
 
   // The tiles of the shard that are not there.
-  std::vector<std::int64_t> Missing();
-  void TakeOver(const ExportManifest& before);
+  absl::StatusOr<std::vector<std::int64_t>> Missing(std::stop_token stop);
+  absl::Status TakeOver(const ExportManifest& before, std::stop_token stop);
   absl::Status Make(const std::vector<std::int64_t>& missing, ProgressMode mode,
                     Backend* backend, std::stop_token stop);
+  absl::Status AddHeader(const v1::StreamHeader& header);
   absl::Status Add(const v1::HeightTile& tile);
   absl::Status Save();
   std::int64_t IndexOf(std::int64_t x, std::int64_t y) const;
@@ -60,7 +69,7 @@ class ExportShard {
   // Those that are there, by index in `whole_`.
   std::map<std::int64_t, ExportTile> tiles_;
   std::int64_t made_ = 0;
-  Clock::time_point saved_ = Clock::now();
+  Clock::time_point next_save_ = Clock::now() + WaitAfterSave({});
 };
 
 }  // namespace terrane::client

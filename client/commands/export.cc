@@ -25,9 +25,9 @@ constexpr char kFooter[] = R"(Examples:
     --out world/tile.tif --shards 4 --shard {} ::: 0 1 2 3
   terrane export --verify --out world/tile.tif --shards 4
 A shard makes one run of the tiles, counted row by row. It writes what it made to
-world/tile.shard-I-of-N.json and, run again, makes only what is missing. Exit
-codes: 0 all is there, 1 error, 2 usage, 3 some tiles are there, 4 server not
-reached, 130 interrupted.)";
+world/tile.tif.shard-I-of-N.json and, run again, makes only what is missing.
+Exit codes: 0 all is there, 1 error, 2 usage, 3 some tiles are there, 4 server
+not reached, 130 interrupted.)";
 
 constexpr std::int64_t kMostShards = 1'000'000;
 constexpr std::int64_t kMostTilesAShard = 100'000;
@@ -115,15 +115,16 @@ void Print(const ExportSummary& summary, bool json) {
       ShortNumber(summary.bytes()), summary.seconds());
 }
 
-int Verify(const ExportCommand& command) {
+int Verify(const ExportCommand& command, std::stop_token stop) {
   ExportSummary summary;
-  const std::vector<std::string> faults =
-      VerifyExport(command.output.path, command.shards, &summary);
-  for (const std::string& fault : faults) {
+  const absl::StatusOr<std::vector<std::string>> faults =
+      VerifyExport(command.output.path, command.shards, stop, &summary);
+  if (!faults.ok()) return ReportStatus(faults.status());
+  for (const std::string& fault : *faults) {
     std::cerr << "terrane: " << fault << '\n';
   }
   Print(summary, command.output.json);
-  return faults.empty() ? kExitOk : kExitPartial;
+  return faults->empty() ? kExitOk : kExitPartial;
 }
 
 int Export(const ExportCommand& command, std::stop_token stop) {
@@ -206,7 +207,7 @@ void AddExportCommand(CLI::App* app, Action* action) {
   subcommand->parse_complete_callback([command] { Check(*command); });
   subcommand->final_callback([command, action] {
     *action = [command](std::stop_token stop) {
-      return command->verify ? Verify(*command) : Export(*command, stop);
+      return command->verify ? Verify(*command, stop) : Export(*command, stop);
     };
   });
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`terrane export`: shards, resuming, verifying; and under GNU parallel.
+"""`terrane export`: shards, resuming, verifying.
 
 Usage: export_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
 """
@@ -7,17 +7,18 @@ Usage: export_test.py TERRANE TERRANE_SERVER STUBS [unittest arguments]
 import concurrent.futures
 import hashlib
 import json
+import os
 import pathlib
-import shutil
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
 
-from real_server import RealServer, TERRANE, main  # noqa: E402
+from real_server import RealServer, TERRANE, main, wait_until  # noqa: E402
 
 CHOICE = ["--level", "7", "--tile-size", "33"]
 TILES = ["--tiles", "-2,3,5,4"]
@@ -71,7 +72,7 @@ class Export(unittest.TestCase):
     def test_the_manifest_names_what_is_there(self):
         summary = self.export("a/tile.f32", "--shards", 2, "--shard", 1)
         (path,) = summary["manifests"]
-        self.assertEqual(path, str(self.folder / "a" / "tile.shard-1-of-2.json"))
+        self.assertEqual(path, str(self.folder / "a" / "tile.f32.shard-1-of-2.json"))
         manifest = json.loads(pathlib.Path(path).read_text())
         self.assertEqual([(tile["x"], tile["y"]) for tile in manifest["tiles"]],
                          [(x, y) for y in (5, 6) for x in range(-2, 3)])
@@ -100,7 +101,7 @@ class Export(unittest.TestCase):
         self.export("a/tile.f32")
         seeded = self.export("a/tile.f32", "--seed", 77)
         self.assertEqual(seeded["made"], 20)
-        (self.folder / "a" / "tile.shard-0-of-1.json").write_text("{ no JSON")
+        (self.folder / "a" / "tile.f32.shard-0-of-1.json").write_text("{ no JSON")
         self.assertEqual(self.export("a/tile.f32", "--seed", 77)["made"], 20)
 
     def test_verify_says_what_is_missing(self):
@@ -108,7 +109,7 @@ class Export(unittest.TestCase):
         for shard in (0, 2):
             self.export("a/tile.f32", "--shards", 3, "--shard", shard)
         failed = self.run_terrane("--verify", "--out", out, "--shards", 3, expected=3)
-        self.assertIn("tile.shard-1-of-3.json", failed.stderr)
+        self.assertIn("tile.f32.shard-1-of-3.json", failed.stderr)
         self.export("a/tile.f32", "--shards", 3, "--shard", 1)
         verified = self.run_terrane("--verify", "--out", out, "--shards", 3, "--json")
         self.assertEqual(json.loads(verified.stdout)["tiles"], 20)
@@ -119,14 +120,28 @@ class Export(unittest.TestCase):
         failed = self.run_terrane("--verify", "--out", out, "--shards", 3, expected=3)
         self.assertIn("of another job", failed.stderr)
 
+    def test_two_formats_in_one_folder_are_two_exports(self):
+        self.export("a/tile.f32")
+        failed = self.run_terrane("--verify", "--out", self.folder / "a" / "tile.tif", expected=3)
+        self.assertIn("cannot read", failed.stderr)
+        self.export("a/tile.tif")
+        for extension in ("f32", "tif"):
+            self.run_terrane("--verify", "--out", self.folder / "a" / f"tile.{extension}")
+            self.assertEqual(self.export(f"a/tile.{extension}")["made"], 0)
+
     def test_an_interrupted_shard_goes_on_where_it_was(self):
         choice = ["--seed", 4, "--level", 30, "--tiles", "0,0,60,60", "--tile-size", 65, "--out", self.folder / "a" / "t.f32",
                   "--server", self.server.address]
         process = subprocess.Popen([TERRANE, "export", *map(str, choice), "--progress", "json"], stderr=subprocess.PIPE,
                                    stdout=subprocess.DEVNULL, text=True)
         process.stderr.readline()
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(30), 130)
+        # It cannot come to its end before the signal does.
+        self.server.process.send_signal(signal.SIGSTOP)
+        try:
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(60), 130)
+        finally:
+            self.server.process.send_signal(signal.SIGCONT)
         process.stderr.close()
         self.assertEqual([path.name for path in (self.folder / "a").iterdir() if path.name.startswith(".")], [])
         summary = json.loads(self.run_terrane(*choice, "--json").stdout)
@@ -134,6 +149,43 @@ class Export(unittest.TestCase):
         self.assertGreater(summary["made"], 0)
         self.assertEqual(summary["tiles"], 3600)
         self.run_terrane("--verify", "--out", self.folder / "a" / "t.f32")
+
+    def test_verify_and_resume_are_interrupted_while_they_hash(self):
+        self.export("a/tile.f32")
+        manifest = (self.folder / "a" / "tile.f32.shard-0-of-1.json").read_bytes()
+        first = self.folder / "a" / "tile_x-2_y3.f32"
+        first.unlink()
+        os.mkfifo(first)
+        out = ["--out", str(self.folder / "a" / "tile.f32")]
+        for arguments in (["--verify", *out], [*CHOICE, *TILES, *out, "--server", self.server.address]):
+            with self.subTest(arguments):
+                process = subprocess.Popen([TERRANE, "export", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                with open(first, "wb"):  # once it reads there
+                    process.send_signal(signal.SIGINT)
+                    self.assertTrue(wait_until(lambda: not self.is_pending(process, signal.SIGINT), 60))
+                    time.sleep(0.5)  # from the signal to what it is to do
+                _, error = process.communicate(timeout=60)
+                self.assertEqual((process.returncode, error), (130, b"terrane: interrupted\n"))
+        self.assertEqual((self.folder / "a" / "tile.f32.shard-0-of-1.json").read_bytes(), manifest)
+
+    def is_pending(self, process, number):
+        """Whether a signal to a process waits for somebody to take it."""
+        with open(f"/proc/{process.pid}/status", encoding="ascii") as status:
+            (mask,) = [int(line.split()[1], 16) for line in status if line.startswith("ShdPnd:")]
+        return mask >> (number - 1) & 1 == 1
+
+    def test_local_has_as_many_threads_as_the_quota_leaves(self):
+        # In a mount namespace of its own, control groups with a quota where the kernel's would be.
+        mount = "mount -t tmpfs tmpfs /sys/fs/cgroup"
+        run = mount + ' && echo "$1 100000" >/sys/fs/cgroup/cpu.max && exec "$2" info --local --json'
+        tried = subprocess.run(["unshare", "--mount", "sh", "-c", mount], capture_output=True, text=True)
+        if tried.returncode != 0:
+            self.skipTest("no mount namespace for control groups of one's own: " + tried.stderr.strip())
+        for quota, expected in [("50000", 1), ("max", len(os.sched_getaffinity(0)))]:
+            with self.subTest(quota):
+                done = subprocess.run(["unshare", "--mount", "sh", "-c", run, "sh", quota, TERRANE], capture_output=True,
+                                      text=True, timeout=120, check=True)
+                self.assertEqual(json.loads(done.stdout)["workers"], expected)
 
     def test_usage_errors_name_the_option(self):
         for arguments, expected in [
@@ -160,18 +212,6 @@ class Export(unittest.TestCase):
                              self.folder / "tile.tif")
         self.run_terrane("--verify", "--out", self.folder / "tile.tif", "--shards", 3)
         self.assertEqual(len(self.tiles(".")), 2)
-
-    def test_under_gnu_parallel(self):
-        if shutil.which("parallel") is None:
-            self.skipTest("there is no GNU parallel: install the package parallel")
-        self.export("whole/tile.tif")
-        out = self.folder / "parts" / "tile.tif"
-        done = subprocess.run(["parallel", "--jobs", "2", TERRANE, "export", *CHOICE, "--tiles=-2,3,5,4", "--server",
-                               self.server.address, "--out", out, "--shards", "4", "--shard", "{}", ":::", "0", "1", "2", "3"],
-                              capture_output=True, text=True, timeout=120)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.run_terrane("--verify", "--out", out, "--shards", 4)
-        self.assertEqual(self.tiles("parts"), self.tiles("whole"))
 
 
 if __name__ == "__main__":

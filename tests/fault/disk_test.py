@@ -81,7 +81,7 @@ class FullDisk(TimedTest):
         code, left, again = self.fill("x.f32", *choice)
         whole = self.reference("x.f32", *choice)
         self.assertEqual(code, 3)
-        manifest = "x.shard-0-of-1.json"
+        manifest = "x.f32.shard-0-of-1.json"
         tiles_left = {name: data for name, data in left.items() if name != manifest}
         self.assertTrue(tiles_left)
         self.assertLess(tiles_left.items(), whole.items())
