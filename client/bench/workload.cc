@@ -44,24 +44,31 @@ absl::StatusOr<Workload> Workload::Create(const WorkloadOptions& options,
     if (!fetched.ok()) return fetched.status();
     *extent = *fetched;
   }
-  if (Asks(weights, RequestKind::kSurfaces)) {
-    v1::GetSurfacePresetRequest request;
-    request.set_name(workload.preset(RequestKind::kSurfaces));
-    const auto found = backend->GetSurfacePreset(request, stop);
-    if (!found.ok()) return found.status();
+  // Of the others it is enough that there is such a preset.
+  const auto check = [&]<typename Request>(RequestKind kind, Request request,
+                                           const auto& fetch) -> absl::Status {
+    if (!Asks(weights, kind)) return absl::OkStatus();
+    request.set_name(workload.preset(kind));
+    return fetch(request).status();
+  };
+  absl::Status found =
+      check(RequestKind::kSurfaces, v1::GetSurfacePresetRequest(),
+            [&](const auto& request) {
+              return backend->GetSurfacePreset(request, stop);
+            });
+  if (found.ok()) {
+    found = check(RequestKind::kTrees, v1::GetTreePresetRequest(),
+                  [&](const auto& request) {
+                    return backend->trees().GetTreePreset(request, stop);
+                  });
   }
-  if (Asks(weights, RequestKind::kTrees)) {
-    v1::GetTreePresetRequest request;
-    request.set_name(workload.preset(RequestKind::kTrees));
-    const auto found = backend->trees().GetTreePreset(request, stop);
-    if (!found.ok()) return found.status();
+  if (found.ok()) {
+    found = check(RequestKind::kFlowers, v1::GetFlowerPresetRequest(),
+                  [&](const auto& request) {
+                    return backend->flowers().GetFlowerPreset(request, stop);
+                  });
   }
-  if (Asks(weights, RequestKind::kFlowers)) {
-    v1::GetFlowerPresetRequest request;
-    request.set_name(workload.preset(RequestKind::kFlowers));
-    const auto found = backend->flowers().GetFlowerPreset(request, stop);
-    if (!found.ok()) return found.status();
-  }
+  if (!found.ok()) return found;
   return workload;
 }
 
