@@ -117,6 +117,7 @@ absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> Credentials(
 }
 
 grpc::ChannelArguments Arguments(const ServerAddress& address,
+                                 const ChannelSecurity& security,
                                  ChannelKind kind) {
   grpc::ChannelArguments arguments;
   // A proxy of the environment is the way to other machines.
@@ -126,6 +127,9 @@ grpc::ChannelArguments Arguments(const ServerAddress& address,
     arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   }
   arguments.SetMaxReceiveMessageSize(kMaxMessageBytes);
+  if (!security.name.empty()) {
+    arguments.SetSslTargetNameOverride(security.name);
+  }
   // A restarted server is found again within our own waits.
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1'000);
@@ -140,9 +144,14 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(
     ChannelKind kind) {
   const absl::StatusOr<ServerAddress> address = ParseServerAddress(server);
   if (!address.ok()) return address.status();
+  if (security.tls && security.name.empty() && address->list) {
+    return absl::InvalidArgumentError(
+        "certificates of several addresses are checked against one name; say "
+        "which (--tls-name)");
+  }
   auto credentials = Credentials(security);
   if (!credentials.ok()) return credentials.status();
-  const grpc::ChannelArguments arguments = Arguments(*address, kind);
+  const grpc::ChannelArguments arguments = Arguments(*address, security, kind);
   if (security.token.empty()) {
     return grpc::CreateCustomChannel(address->target, *credentials, arguments);
   }

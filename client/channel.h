@@ -20,7 +20,8 @@ enum class ChannelKind { kShared, kOwnConnection };
 
 // `server` is as client/server_address.h reads it. Connects with the first
 // call. Errors: INVALID_ARGUMENT when it is no address, when a file cannot be
-// read, or when a token would leave this machine without TLS.
+// read, when a token would leave this machine without TLS, or when a list of
+// addresses lacks the name in their certificates.
 absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(
     const std::string& server, const ChannelSecurity& security,
     ChannelKind kind);

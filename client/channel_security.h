@@ -6,13 +6,15 @@
 
 namespace terrane::client {
 
-// Names of PEM files, and of one with a token; empty: none.
+// Empty: none. `ca`, `certificate` and `key` are PEM files.
 struct ChannelSecurity {
   bool tls = false;
   std::string ca;           // who signs servers; none: whom the system trusts
+  std::string name;         // in their certificates; none: the address's host
   std::string certificate;  // this client's own, for servers that demand one
   std::string key;
-  // A bearer token, read anew for every call, so that a long run outlives it.
+  // A file with a bearer token, read anew for every call, so that a long run
+  // outlives it.
   std::string token;
 };
 

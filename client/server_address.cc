@@ -103,7 +103,7 @@ absl::StatusOr<ServerAddress> ParseServerAddress(const std::string& text) {
   if (replicas.size() == 1) return ServerAddress{text, false, loopback};
   const absl::StatusOr<std::string> target = ListTarget(replicas);
   if (!target.ok()) return target.status();
-  return ServerAddress{*target, true, loopback};
+  return ServerAddress{*target, true, loopback, true};
 }
 
 }  // namespace terrane::client

@@ -26,6 +26,8 @@ struct ServerAddress {
   bool several = false;
   // Every address is this machine's own.
   bool loopback = false;
+  // A list has no one host that certificates could be checked against.
+  bool list = false;
 };
 
 // INVALID_ARGUMENT names the part that is no address.

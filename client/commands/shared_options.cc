@@ -33,6 +33,10 @@ void AddSecurityOptions(CLI::App* command, ChannelSecurity* security) {
       command->add_option("--tls-ca", security->ca,
                           "Who signs the server's certificate (PEM; default: "
                           "whom the system trusts)");
+  CLI::Option* name =
+      command->add_option("--tls-name", security->name,
+                          "Name in the server's certificate (default: the host "
+                          "of --server; a list of replicas has none)");
   CLI::Option* certificate =
       command->add_option("--tls-cert", security->certificate,
                           "This client's certificate chain (PEM), for servers "
@@ -44,13 +48,14 @@ void AddSecurityOptions(CLI::App* command, ChannelSecurity* security) {
       "File with a bearer token; without --tls only for a server on this "
       "machine");
   ca->envname("TERRANE_TLS_CA")->needs(tls);
+  name->envname("TERRANE_TLS_NAME")->needs(tls)->type_name("NAME");
   certificate->envname("TERRANE_TLS_CERT")->needs(tls)->needs(key);
   key->envname("TERRANE_TLS_KEY")->needs(certificate);
   token->envname("TERRANE_TOKEN_FILE");
   for (CLI::Option* file : {ca, certificate, key, token}) {
     file->check(CLI::ExistingFile);
   }
-  for (CLI::Option* option : {tls, ca, certificate, key, token}) {
+  for (CLI::Option* option : {tls, ca, name, certificate, key, token}) {
     option->group("Connection");
   }
 }
