@@ -116,9 +116,20 @@ absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> Credentials(
   return grpc::SslCredentials(options);
 }
 
+// A machine that vanished must not keep its streams for ever.
+void AskWhetherAlive(std::chrono::milliseconds ping_after,
+                     grpc::ChannelArguments* arguments) {
+  const int ms = static_cast<int>(ping_after.count());
+  arguments->SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, ms);
+  arguments->SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, ms);
+  // Else gRPC stops to ask on a stream on which nothing else goes.
+  arguments->SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+}
+
 grpc::ChannelArguments Arguments(const ServerAddress& address,
                                  const ChannelSecurity& security,
-                                 ChannelKind kind) {
+                                 ChannelKind kind,
+                                 std::chrono::milliseconds ping_after) {
   grpc::ChannelArguments arguments;
   // A proxy of the environment is the way to other machines.
   if (address.loopback) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
@@ -130,10 +141,13 @@ grpc::ChannelArguments Arguments(const ServerAddress& address,
   if (!security.name.empty()) {
     arguments.SetSslTargetNameOverride(security.name);
   }
+  AskWhetherAlive(ping_after, &arguments);
   // A restarted server is found again within our own waits.
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
-  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1'000);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
+  // The time for TCP, TLS and the server's first frame. Who refuses a
+  // connection does so at once.
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 5'000);
   return arguments;
 }
 
@@ -141,7 +155,7 @@ grpc::ChannelArguments Arguments(const ServerAddress& address,
 
 absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(
     const std::string& server, const ChannelSecurity& security,
-    ChannelKind kind) {
+    ChannelKind kind, std::chrono::milliseconds ping_after) {
   const absl::StatusOr<ServerAddress> address = ParseServerAddress(server);
   if (!address.ok()) return address.status();
   if (security.tls && security.name.empty() && address->list) {
@@ -151,7 +165,8 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(
   }
   auto credentials = Credentials(security);
   if (!credentials.ok()) return credentials.status();
-  const grpc::ChannelArguments arguments = Arguments(*address, security, kind);
+  const grpc::ChannelArguments arguments =
+      Arguments(*address, security, kind, ping_after);
   if (security.token.empty()) {
     return grpc::CreateCustomChannel(address->target, *credentials, arguments);
   }

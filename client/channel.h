@@ -6,11 +6,13 @@
 
 #include <grpcpp/channel.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "client/channel_security.h"
+#include "client/patience.h"
 
 namespace terrane::client {
 
@@ -19,12 +21,13 @@ namespace terrane::client {
 enum class ChannelKind { kShared, kOwnConnection };
 
 // `server` is as client/server_address.h reads it. Connects with the first
-// call. Errors: INVALID_ARGUMENT when it is no address, when a file cannot be
-// read, when a token would leave this machine without TLS, or when a list of
+// call, and again whenever it must; `ping_after` is as in client/patience.h.
+// Errors: INVALID_ARGUMENT when it is no address, when a file cannot be read,
+// when a token would leave this machine without TLS, or when a list of
 // addresses lacks the name in their certificates.
 absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(
     const std::string& server, const ChannelSecurity& security,
-    ChannelKind kind);
+    ChannelKind kind, std::chrono::milliseconds ping_after = kPingAfter);
 
 }  // namespace terrane::client
 

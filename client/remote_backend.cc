@@ -2,6 +2,7 @@
 
 #include <grpcpp/client_context.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "client/raster_upload.h"
@@ -40,8 +41,8 @@ const v1::StreamSurfaceResponse& MeshOrHeights(
 }  // namespace
 
 RemoteBackend::RemoteBackend(const std::string& server,
-                             const ChannelSecurity& security)
-    : caller_(server, security),
+                             const ChannelSecurity& security, Patience patience)
+    : caller_(server, security, std::move(patience)),
       terrain_(v1::TerrainService::NewStub(caller_.channel())),
       surface_(v1::SurfaceService::NewStub(caller_.channel())),
       raster_(v1::RasterService::NewStub(caller_.channel())),
@@ -140,9 +141,13 @@ absl::StatusOr<v1::PreparedTerrain> RemoteBackend::PrepareTerrain(
     const v1::PrepareTerrainRequest& request,
     const OnPrepareProgress& on_progress, std::stop_token stop) {
   v1::PreparedTerrain prepared;
+  double farthest = 0;
   const absl::Status status = caller_.Run(
       RemoteCaller::CallKind::kUnary,
-      [&] { return PrepareOnce(request, on_progress, stop, &prepared); }, stop);
+      [&] {
+        return PrepareOnce(request, on_progress, stop, &farthest, &prepared);
+      },
+      stop);
   if (!status.ok()) return status;
   return prepared;
 }
@@ -150,23 +155,28 @@ absl::StatusOr<v1::PreparedTerrain> RemoteBackend::PrepareTerrain(
 RemoteCaller::Attempt RemoteBackend::PrepareOnce(
     const v1::PrepareTerrainRequest& request,
     const OnPrepareProgress& on_progress, std::stop_token stop,
-    v1::PreparedTerrain* prepared) {
-  grpc::ClientContext context;
-  const CancelOnStop cancel(stop, &context);
-  const auto reader = terrain_->PrepareTerrain(&context, request);
+    double* farthest, v1::PreparedTerrain* prepared) {
+  StreamTry stream(stop, caller_.patience().stall);
+  const auto reader = stream.Start([&](grpc::ClientContext* context) {
+    return terrain_->PrepareTerrain(context, request);
+  });
   RemoteCaller::Attempt attempt;
   bool complete = false;
   v1::PrepareTerrainResponse message;
-  while (reader->Read(&message)) {
-    attempt.progressed = true;
+  while (stream.Read(reader.get(), &message)) {
+    attempt.answered = true;
     if (message.has_prepared()) {
       *prepared = message.prepared();
       complete = true;
-    } else if (on_progress) {
-      on_progress(message.progress().fraction());
+      continue;
     }
+    const double fraction = message.progress().fraction();
+    // A server may well die of this preparation, each time at the same place.
+    if (fraction > *farthest) attempt.progressed = true;
+    *farthest = std::max(*farthest, fraction);
+    if (on_progress) on_progress(fraction);
   }
-  attempt.error = DecodeStatus(reader->Finish());
+  attempt.error = stream.Finish(reader.get());
   if (attempt.error.status.ok() && !complete) {
     attempt.error.status =
         absl::DataLossError("the server ended without a prepared terrain");
@@ -223,7 +233,8 @@ RemoteCaller::Attempt RemoteBackend::UploadRasterOnce(
   v1::UploadRasterResponse response;
   const auto writer = raster_->UploadRaster(&context, &response);
   RemoteCaller::Attempt attempt{
-      DecodeStatus(WriteParts(raster, SendRaster, writer.get()))};
+      DecodeStatus(WriteParts(raster, SendRaster, writer.get()),
+                   context.GetServerTrailingMetadata())};
   *raster_id = response.raster_id();
   return attempt;
 }
@@ -236,7 +247,8 @@ RemoteCaller::Attempt RemoteBackend::UploadTableOnce(const SpotTable& table,
   v1::UploadSpotTableResponse response;
   const auto writer = spot_table_->UploadSpotTable(&context, &response);
   RemoteCaller::Attempt attempt{
-      DecodeStatus(WriteParts(table, SendSpotTable, writer.get()))};
+      DecodeStatus(WriteParts(table, SendSpotTable, writer.get()),
+                   context.GetServerTrailingMetadata())};
   *table_id = response.table_id();
   return attempt;
 }

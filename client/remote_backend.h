@@ -29,7 +29,8 @@ class RemoteBackend : public Backend {
   // `server` is as client/server_address.h reads it. Connects with the first
   // call.
   explicit RemoteBackend(const std::string& server,
-                         const ChannelSecurity& security = {});
+                         const ChannelSecurity& security = {},
+                         Patience patience = {});
 
   absl::Status StreamTiles(const v1::StreamTilesRequest& request,
                            const OnHeader& on_header, const OnTile& on_tile,
@@ -81,7 +82,9 @@ class RemoteBackend : public Backend {
                           std::string* table_id);
   Attempt PrepareOnce(const v1::PrepareTerrainRequest& request,
                       const OnPrepareProgress& on_progress,
-                      std::stop_token stop, v1::PreparedTerrain* prepared);
+                      std::stop_token stop, double* farthest,
+                      v1::PreparedTerrain* prepared);
+
   RemoteCaller caller_;
   std::unique_ptr<v1::TerrainService::Stub> terrain_;
   std::unique_ptr<v1::SurfaceService::Stub> surface_;

@@ -2,10 +2,6 @@
 
 #include <grpcpp/create_channel.h>
 
-#include <algorithm>
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <set>
 #include <utility>
 
@@ -14,18 +10,13 @@
 namespace terrane::client {
 namespace {
 
-using std::chrono::milliseconds;
-
 // Tries in a row that bring nothing new: few when the server was never reached,
 // so that a wrong address shows at once; more to outlast a restart.
-constexpr int kTriesBeforeContact = 3;
-constexpr int kTriesAfterContact = 9;
-
-constexpr milliseconds kFirstWait{100};
-constexpr milliseconds kLongestWait{2'000};
-constexpr milliseconds kLongestAskedWait{30'000};
+constexpr int kTriesUnreached = 3;
+constexpr int kTriesReached = 9;
 
 bool WorthAnotherTry(const RemoteError& error, bool stream) {
+  if (error.turned_away) return false;
   switch (error.status.code()) {
     case absl::StatusCode::kUnavailable:
       return true;
@@ -41,13 +32,12 @@ bool WorthAnotherTry(const RemoteError& error, bool stream) {
   }
 }
 
-// Sleeps; false when asked to stop meanwhile.
-bool Sleep(milliseconds duration, std::stop_token stop) {
-  std::mutex mutex;
-  std::condition_variable_any never;
-  std::unique_lock lock(mutex);
-  never.wait_for(lock, stop, duration, [] { return false; });
-  return !stop.stop_requested();
+// Whether the server had a part in it: of itself gRPC says UNAVAILABLE, where
+// it does not get through.
+bool IsAnswer(const RemoteCaller::Attempt& attempt) {
+  const RemoteError& error = attempt.error;
+  return attempt.answered || error.retry_delay.has_value() ||
+         error.status.code() != absl::StatusCode::kUnavailable;
 }
 
 // What stubs can be made of where no channel can be: every call on it fails.
@@ -57,10 +47,21 @@ std::shared_ptr<grpc::Channel> LameChannel(const std::string& server) {
 
 }  // namespace
 
+RemoteError StreamTry::StallError() const {
+  RemoteError error;
+  error.status = absl::UnavailableError(
+      "nothing came for " +
+      std::to_string(std::chrono::duration<double>(stall_).count()) +
+      " seconds");
+  return error;
+}
+
 RemoteCaller::RemoteCaller(const std::string& server,
-                           const ChannelSecurity& security)
+                           const ChannelSecurity& security, Patience patience)
     : target_(server),
-      opened_(OpenChannel(server, security, ChannelKind::kShared)),
+      patience_(std::move(patience)),
+      opened_(OpenChannel(server, security, ChannelKind::kShared,
+                          patience_.ping_after)),
       channel_(opened_.ok() ? *opened_ : LameChannel(server)) {}
 
 absl::Status RemoteCaller::Run(CallKind kind,
@@ -68,11 +69,11 @@ absl::Status RemoteCaller::Run(CallKind kind,
                                std::stop_token stop) {
   if (!opened_.ok()) return opened_.status();
   int failures = 0;
-  int allowed = kTriesBeforeContact;
   std::set<std::string> brought_back;
   while (true) {
     const Attempt result = attempt();
     const RemoteError& error = result.error;
+    reached_ = reached_ || IsAnswer(result);
     if (error.status.ok() || result.final) return error.status;
     if (stop.stop_requested()) return absl::CancelledError("interrupted");
     if (bring_back_ && !error.missing_content.empty() &&
@@ -84,18 +85,10 @@ absl::Status RemoteCaller::Run(CallKind kind,
         continue;
       }
     }
-    if (result.progressed) {
-      failures = 0;
-      allowed = kTriesAfterContact;
-    }
-    ++failures;
+    failures = result.progressed ? 1 : failures + 1;
     if (!WorthAnotherTry(error, kind == CallKind::kStream) ||
-        failures >= allowed) {
-      if (error.status.code() != absl::StatusCode::kUnavailable) {
-        return error.status;
-      }
-      return absl::UnavailableError("server " + target_ + " does not answer: " +
-                                    std::string(error.status.message()));
+        failures >= (reached_ ? kTriesReached : kTriesUnreached)) {
+      return GivenUp(error.status);
     }
     if (!Wait(error, failures, stop)) {
       return absl::CancelledError("interrupted");
@@ -103,19 +96,18 @@ absl::Status RemoteCaller::Run(CallKind kind,
   }
 }
 
+absl::Status RemoteCaller::GivenUp(const absl::Status& status) const {
+  if (status.code() != absl::StatusCode::kUnavailable) return status;
+  return absl::UnavailableError("server " + target_ + " does not answer: " +
+                                std::string(status.message()));
+}
+
 bool RemoteCaller::Wait(const RemoteError& error, int failures,
                         std::stop_token stop) {
-  const milliseconds backoff =
-      std::min(kFirstWait * (1 << std::min(failures - 1, 10)), kLongestWait);
-  // Between half and one and a half of it, so that clients do not return
-  // together.
-  std::uniform_int_distribution<milliseconds::rep> spread(
-      backoff.count() / 2, backoff.count() * 3 / 2);
-  milliseconds wait(spread(jitter_));
-  if (error.retry_delay.has_value()) {
-    wait += std::min(*error.retry_delay, kLongestAskedWait);
-  }
-  return Sleep(wait, stop);
+  std::uniform_real_distribution<double> spread(0, 1);
+  return patience_.wait(
+      WaitBeforeNextTry(failures, error.retry_delay, spread(jitter_)),
+      std::move(stop));
 }
 
 }  // namespace terrane::client

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <string_view>
 
 #include "core/base/violations.h"
@@ -10,8 +11,9 @@
 namespace terrane::client {
 namespace {
 
+constexpr char kPushbackKey[] = "grpc-retry-pushback-ms";
 // No server asks for more than this in earnest.
-constexpr std::int64_t kMaxRetryDelaySeconds = 3600;
+constexpr std::int64_t kMaxRetryDelayMs = 3'600'000;
 
 // The reasons of ErrorInfo that an upload mends, and the key of the content's
 // id.
@@ -23,6 +25,11 @@ constexpr std::array<MissingContent, 2> kMissingContents = {{
     {"RASTER_NOT_FOUND", "raster_id"},
     {"SPOT_TABLE_NOT_FOUND", "table_id"},
 }};
+
+std::chrono::milliseconds RetryDelay(std::int64_t ms) {
+  return std::chrono::milliseconds(
+      std::clamp<std::int64_t>(ms, 0, kMaxRetryDelayMs));
+}
 
 // The details travel under the type URLs of google.rpc, whose field numbers the
 // messages of terrane.v1 have; so the name after the last slash tells them
@@ -54,15 +61,29 @@ void AddDetail(const google::protobuf::Any& detail,
     v1::RetryInfo retry;
     if (!retry.ParseFromString(detail.value())) return;
     const std::int64_t seconds = std::clamp<std::int64_t>(
-        retry.retry_delay().seconds(), 0, kMaxRetryDelaySeconds);
-    error->retry_delay = std::chrono::milliseconds(
-        seconds * 1000 + retry.retry_delay().nanos() / 1'000'000);
+        retry.retry_delay().seconds(), 0, kMaxRetryDelayMs / 1000);
+    error->retry_delay =
+        RetryDelay(seconds * 1000 + retry.retry_delay().nanos() / 1'000'000);
+  }
+}
+
+void AddPushback(const TrailingMetadata& trailing, RemoteError* error) {
+  const auto found = trailing.find(kPushbackKey);
+  if (found == trailing.end()) return;
+  const char* const end = found->second.data() + found->second.size();
+  std::int64_t ms = 0;
+  const auto [rest, fault] = std::from_chars(found->second.data(), end, ms);
+  if (fault != std::errc() || rest != end || ms < 0) {
+    error->turned_away = true;
+  } else {
+    error->retry_delay = RetryDelay(ms);
   }
 }
 
 }  // namespace
 
-RemoteError DecodeStatus(const grpc::Status& status) {
+RemoteError DecodeStatus(const grpc::Status& status,
+                         const TrailingMetadata& trailing) {
   RemoteError error;
   if (status.ok()) return error;
   // gRPC's codes and Abseil's are the same numbers.
@@ -70,11 +91,13 @@ RemoteError DecodeStatus(const grpc::Status& status) {
       absl::Status(static_cast<absl::StatusCode>(status.error_code()),
                    status.error_message());
   v1::ErrorStatus details;
-  if (!details.ParseFromString(status.error_details())) return error;
   core::Violations violations;
-  for (const google::protobuf::Any& detail : details.details()) {
-    AddDetail(detail, &violations, &error);
+  if (details.ParseFromString(status.error_details())) {
+    for (const google::protobuf::Any& detail : details.details()) {
+      AddDetail(detail, &violations, &error);
+    }
   }
+  if (!error.retry_delay.has_value()) AddPushback(trailing, &error);
   if (status.error_code() == grpc::StatusCode::INVALID_ARGUMENT &&
       !violations.empty()) {
     error.status = violations.ToStatus();

@@ -1,12 +1,15 @@
 // What a gRPC status says beyond its code: decodes grpc-status-details-bin into
-// an absl::Status with violations, content to upload again, time to wait.
-// Threads: any.
+// an absl::Status with violations, content to upload again, time to wait. A
+// proxy or another server may ask for that time only in the trailing metadata
+// (grpc-retry-pushback-ms, gRPC's proposal A6). Pure functions. Threads: any.
 #ifndef TERRANE_CLIENT_STATUS_DETAILS_H_
 #define TERRANE_CLIENT_STATUS_DETAILS_H_
 
 #include <grpcpp/support/status.h>
+#include <grpcpp/support/string_ref.h>
 
 #include <chrono>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -20,12 +23,18 @@ struct RemoteError {
   // Id of uploaded content that the server does not keep, or no longer: a
   // raster or a spot table. Empty when the error is another.
   std::string missing_content;
-  // RetryInfo: wait at least this long.
+  // Wait at least this long.
   std::optional<std::chrono::milliseconds> retry_delay;
+  // Do not come back at all: the metadata name no time from 0 on.
+  bool turned_away = false;
 };
 
-// Details that do not parse are left out: the code and message still stand.
-RemoteError DecodeStatus(const grpc::Status& status);
+using TrailingMetadata = std::multimap<grpc::string_ref, grpc::string_ref>;
+
+// Details that do not parse are left out: the code and message still stand. A
+// RetryInfo goes before the metadata.
+RemoteError DecodeStatus(const grpc::Status& status,
+                         const TrailingMetadata& trailing = {});
 
 }  // namespace terrane::client
 

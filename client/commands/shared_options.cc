@@ -2,7 +2,9 @@
 
 #include <google/protobuf/util/json_util.h>
 
+#include <chrono>
 #include <map>
+#include <utility>
 
 #include "client/local_backend.h"
 #include "client/remote_backend.h"
@@ -118,6 +120,13 @@ void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
       ->group("Connection");
   AddSecurityOptions(command, &options->security);
   command
+      ->add_option("--stall-seconds", options->stall_seconds,
+                   "A stream that brings nothing for this time is asked for "
+                   "again where it stopped; 0: never")
+      ->check(CLI::Range(0, 86'400))
+      ->capture_default_str()
+      ->group("Connection");
+  command
       ->add_flag("--local", options->local,
                  "Generate in this process instead of asking a server")
       ->group("Connection");
@@ -131,7 +140,10 @@ void AddConnectionOptions(CLI::App* command, ConnectionOptions* options) {
 
 std::unique_ptr<Backend> MakeBackend(const ConnectionOptions& options) {
   if (!options.local) {
-    return std::make_unique<RemoteBackend>(options.server, options.security);
+    Patience patience;
+    patience.stall = std::chrono::seconds(options.stall_seconds);
+    return std::make_unique<RemoteBackend>(options.server, options.security,
+                                           std::move(patience));
   }
   return std::make_unique<LocalBackend>(options.threads);
 }

@@ -33,6 +33,7 @@ CLI::Validator NotNegative();
 struct ConnectionOptions {
   std::string server = "127.0.0.1:50051";
   ChannelSecurity security;
+  int stall_seconds = 120;  // 0: streams may stall for ever
   bool local = false;
   int threads = 0;  // 0: every usable CPU
 };

@@ -1,8 +1,8 @@
-// RemoteBackend against two replicas, one of which goes away.
+// RemoteBackend against two replicas, by list and by name, one of which may go
+// away.
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 #include <gtest/gtest.h>
-#include <xxhash.h>
 
 #include <atomic>
 #include <chrono>
@@ -12,24 +12,12 @@
 #include <thread>
 
 #include "client/remote_backend.h"
-#include "terrane/v1/common.pb.h"
+#include "tests/client/faulty_server.h"
 
 namespace terrane::client {
 namespace {
 
-constexpr std::int64_t kTiles = 6;
 constexpr char kRasterId[] = "sha256:r";
-
-grpc::Status RasterNotFound() {
-  v1::ErrorInfo info;
-  info.set_reason("RASTER_NOT_FOUND");
-  (*info.mutable_metadata())["raster_id"] = kRasterId;
-  v1::ErrorStatus details;
-  google::protobuf::Any* detail = details.add_details();
-  detail->set_type_url("type.googleapis.com/google.rpc.ErrorInfo");
-  detail->set_value(info.SerializeAsString());
-  return {grpc::StatusCode::NOT_FOUND, "gone", details.SerializeAsString()};
-}
 
 // One replica: the same tiles as the other one, one sample each. Once told to
 // hold, it keeps a stream after its second tile until it is stopped.
@@ -46,6 +34,7 @@ class Replica : public v1::TerrainService::Service,
   }
   ~Replica() override { Stop(); }
 
+  int port() const { return port_; }
   std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
   // As a killed process: the streams are cut.
   void Stop() {
@@ -56,15 +45,11 @@ class Replica : public v1::TerrainService::Service,
   grpc::Status StreamTiles(
       grpc::ServerContext* context, const v1::StreamTilesRequest* request,
       grpc::ServerWriter<v1::StreamTilesResponse>* writer) override {
-    if (needs_raster && uploads == 0) return RasterNotFound();
+    if (needs_raster && uploads == 0) {
+      return NotKept("RASTER_NOT_FOUND", "raster_id", kRasterId);
+    }
     ++streams;
-    v1::StreamTilesResponse message;
-    v1::StreamHeader* header = message.mutable_header();
-    header->set_tile_size(1);
-    header->set_tile_columns(kTiles);
-    header->set_tile_rows(1);
-    header->mutable_window()->set_width(kTiles);
-    header->mutable_window()->set_height(1);
+    v1::StreamTilesResponse message = Header();
     writer->Write(message);
     for (std::int64_t i = request->first_tile(); i < kTiles; ++i) {
       if (holds && i == 2) {
@@ -96,18 +81,6 @@ class Replica : public v1::TerrainService::Service,
   std::atomic<int> uploads = 0;
 
  private:
-  static v1::HeightTile Tile(std::int64_t index) {
-    v1::HeightTile tile;
-    tile.set_index(index);
-    tile.set_total(kTiles);
-    tile.mutable_window()->set_x(index);
-    tile.mutable_window()->set_width(1);
-    tile.mutable_window()->set_height(1);
-    tile.set_data(std::string(4, static_cast<char>('0' + index)));
-    tile.set_checksum(XXH3_64bits(tile.data().data(), tile.data().size()));
-    return tile;
-  }
-
   int port_ = 0;
   std::unique_ptr<grpc::Server> server_;
 };
@@ -116,8 +89,12 @@ class ReplicasTest : public testing::Test {
  protected:
   // Streams all tiles; `on_tile` sees each.
   std::string Stream(const std::function<void(std::int64_t)>& on_tile) {
+    return Stream(&backend_, on_tile);
+  }
+  static std::string Stream(RemoteBackend* backend,
+                            const std::function<void(std::int64_t)>& on_tile) {
     std::string received;
-    const absl::Status status = backend_.StreamTiles(
+    const absl::Status status = backend->StreamTiles(
         v1::StreamTilesRequest(),
         [](const v1::StreamHeader&) { return absl::OkStatus(); },
         [&](const v1::HeightTile& tile) {
@@ -164,6 +141,12 @@ TEST_F(ReplicasTest, StreamOfAStoppedReplicaGoesOnAtTheOther) {
   });
   EXPECT_EQ(received, "012345");
   EXPECT_EQ(first_.streams + second_.streams, 2);
+  EXPECT_EQ(first_.streams, 1);
+}
+
+TEST_F(ReplicasTest, NameIsDialled) {
+  RemoteBackend backend("dns:///localhost:" + std::to_string(first_.port()));
+  EXPECT_EQ(Stream(&backend, [](std::int64_t) {}), "012345");
   EXPECT_EQ(first_.streams, 1);
 }
 
