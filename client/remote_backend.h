@@ -1,8 +1,8 @@
 // RemoteBackend: the API of a server across the network, over gRPC.
 //
 // What it adds to the generated stubs: the patience of a RemoteCaller; every
-// tile verified; a raster or spot table that the server has evicted uploaded
-// again, once a call.
+// tile verified; a raster or spot table that the server has evicted, or that
+// another replica has, uploaded again, a few times a call.
 #ifndef TERRANE_CLIENT_REMOTE_BACKEND_H_
 #define TERRANE_CLIENT_REMOTE_BACKEND_H_
 

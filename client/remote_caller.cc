@@ -2,7 +2,7 @@
 
 #include <grpcpp/create_channel.h>
 
-#include <set>
+#include <map>
 #include <utility>
 
 #include "client/channel.h"
@@ -14,6 +14,9 @@ namespace {
 // so that a wrong address shows at once; more to outlast a restart.
 constexpr int kTriesUnreached = 3;
 constexpr int kTriesReached = 9;
+
+// How often a call may miss the same content before that is its answer.
+constexpr int kMissesOfContent = 3;
 
 bool WorthAnotherTry(const RemoteError& error, bool stream) {
   if (error.turned_away) return false;
@@ -69,19 +72,18 @@ absl::Status RemoteCaller::Run(CallKind kind,
                                std::stop_token stop) {
   if (!opened_.ok()) return opened_.status();
   int failures = 0;
-  std::set<std::string> brought_back;
+  std::map<std::string, int> misses;
   while (true) {
     const Attempt result = attempt();
     const RemoteError& error = result.error;
     reached_ = reached_ || IsAnswer(result);
     if (error.status.ok() || result.final) return error.status;
     if (stop.stop_requested()) return absl::CancelledError("interrupted");
-    if (bring_back_ && !error.missing_content.empty() &&
-        brought_back.insert(error.missing_content).second) {
-      const std::optional<absl::Status> status =
-          bring_back_(error.missing_content, stop);
-      if (status.has_value()) {
-        if (!status->ok()) return *status;
+    if (bring_back_ && !error.missing_content.empty()) {
+      const int missed = ++misses[error.missing_content];
+      const auto brought = BringBackTo(missed, error.missing_content, stop);
+      if (brought.has_value()) {
+        if (!brought->ok()) return *brought;
         continue;
       }
     }
@@ -94,6 +96,19 @@ absl::Status RemoteCaller::Run(CallKind kind,
       return absl::CancelledError("interrupted");
     }
   }
+}
+
+// Uploads take turns between replicas as other calls do, so one may well pass
+// the replica that missed the content: with each miss there are more of them.
+std::optional<absl::Status> RemoteCaller::BringBackTo(
+    int replicas, const std::string& content_id, std::stop_token stop) {
+  if (replicas > kMissesOfContent) return std::nullopt;
+  std::optional<absl::Status> status;
+  for (int i = 0; i < replicas; ++i) {
+    status = bring_back_(content_id, stop);
+    if (!status.has_value() || !status->ok()) break;
+  }
+  return status;
 }
 
 absl::Status RemoteCaller::GivenUp(const absl::Status& status) const {

@@ -136,6 +136,9 @@ class RemoteCaller {
   Attempt StreamOnce(const Open& open, const Header& on_header,
                      const Part& on_part, const PartOf& part_of,
                      std::stop_token stop, Verifier* verifier);
+  std::optional<absl::Status> BringBackTo(int replicas,
+                                          const std::string& content_id,
+                                          std::stop_token stop);
   absl::Status GivenUp(const absl::Status& status) const;
   bool Wait(const RemoteError& error, int failures, std::stop_token stop);
 

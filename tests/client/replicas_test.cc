@@ -150,6 +150,21 @@ TEST_F(ReplicasTest, NameIsDialled) {
   EXPECT_EQ(first_.streams, 1);
 }
 
+// Uploads go round robin too, as if to spite the stream that follows.
+TEST_F(ReplicasTest, RasterIsBroughtWhileBothReplicasServe) {
+  first_.needs_raster = true;
+  second_.needs_raster = true;
+  const auto raster = std::make_shared<const core::Raster>(
+      core::Raster{2, 2, {}, std::vector<float>(4, 1.0F)});
+  ASSERT_TRUE(backend_.UploadRaster(raster, {}).ok());
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(Stream([](std::int64_t) {}), "012345");
+    // Both have lost it.
+    first_.uploads = 0;
+    second_.uploads = 0;
+  }
+}
+
 TEST_F(ReplicasTest, RasterIsBroughtToTheReplicaThatLacksIt) {
   first_.needs_raster = true;
   second_.needs_raster = true;
