@@ -13,7 +13,7 @@ absl::Status LocalFlowers::StreamFlower(const v1::StreamFlowerRequest& request,
                                         std::stop_token stop) {
   FlowerVerifier verifier(request);
   return HandOutRun(
-      maker_->Open(request), on_header, on_part,
+      maker_->Open(request, stop), on_header, on_part,
       [](const auto& message) -> const auto& { return message; },
       std::move(stop), &verifier);
 }

@@ -13,10 +13,10 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FlowerServiceImpl::StreamFlower(
   using Source = RunSource<v1::StreamFlowerRequest, v1::StreamFlowerResponse>;
   return TileStream::Start(
       parts_, "StreamFlower", context,
-      std::make_unique<Source>(*request,
-                               [this](const auto& asked, std::stop_token) {
-                                 return parts_.actor->flowers().Open(asked);
-                               }));
+      std::make_unique<Source>(
+          *request, [this](const auto& asked, std::stop_token stop) {
+            return parts_.actor->flowers().Open(asked, stop);
+          }));
 }
 
 grpc::ServerUnaryReactor* FlowerServiceImpl::EstimateFlower(
