@@ -3,21 +3,25 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <thread>
 #include <utility>
 
 #include "client/bench/load_progress.h"
+#include "client/bench/load_settings.h"
 #include "client/bench/summary.h"
+#include "client/bench/sweep.h"
 #include "client/bench/text_report.h"
+#include "client/patience.h"
 
 namespace terrane::client {
 namespace {
 
 // Of the readings of CPU time and memory.
 constexpr std::chrono::milliseconds kLookInterval{100};
+// Rates that a sweep tries between its own: with each, what is not known of the
+// knee halves (on a logarithmic scale).
+constexpr int kSearchSteps = 2;
 
 LoadClock::duration ClockTime(std::chrono::duration<double> time) {
   return std::chrono::duration_cast<LoadClock::duration>(time);
@@ -27,24 +31,16 @@ LoadClock::duration ClockTime(std::chrono::duration<double> time) {
 void LookAt(const LoadTimes& times, UsageWatch* watch) {
   const LoadClock::time_point now = LoadClock::now();
   if (now < times.measured_from() || now > times.measured_to()) return;
-  if (watch->has_begun()) {
-    watch->Look();
-  } else {
-    watch->Begin();
-  }
+  watch->Look(now);
 }
 
 // Reads until it is told that the load is done. A thread of its own, for a
 // server's metrics may take their time to come.
 void WatchUsage(const LoadTimes& times, const std::vector<UsageWatch*>& watches,
                 std::stop_token done) {
-  std::mutex mutex;
-  std::condition_variable_any never;
-  std::unique_lock lock(mutex);
-  while (!done.stop_requested()) {
+  do {
     for (UsageWatch* watch : watches) LookAt(times, watch);
-    never.wait_for(lock, done, kLookInterval, [] { return false; });
-  }
+  } while (SleepFor(kLookInterval, done));
 }
 
 class Bench {
@@ -56,11 +52,15 @@ class Bench {
         on_run_(std::move(on_run)),
         stop_(std::move(stop)) {}
 
-  void RunOne(const LoadOptions& load);
+  // The run is the report's.
+  BenchRun* RunOne(const LoadOptions& load);
   void RunSweep();
   BenchReport TakeReport() { return std::move(report_); }
 
  private:
+  // One rate of a sweep. Nothing at 0, and once the test was stopped.
+  void RunRung(double rate, bool searched);
+
   const BenchOptions& options_;
   CallMaker* const calls_;
   const OnRun on_run_;
@@ -68,7 +68,7 @@ class Bench {
   BenchReport report_;
 };
 
-void Bench::RunOne(const LoadOptions& load) {
+BenchRun* Bench::RunOne(const LoadOptions& load) {
   MixOptions mix = options_.mix;
   // What is cold in one run would be known in the next.
   mix.seed += static_cast<std::uint64_t>(report_.runs_size());
@@ -80,17 +80,13 @@ void Bench::RunOne(const LoadOptions& load) {
   UsageWatch server(options_.server_usage);
   std::vector<UsageWatch*> watches = {&client};
   if (options_.server_usage) watches.push_back(&server);
-  BenchRun description;
-  description.set_loop(load.rate > 0 ? "open" : "closed");
-  description.set_rate(load.rate);
-  description.set_concurrency(load.concurrency);
 
   LoadEnd end = LoadEnd::kComplete;
   {
     const std::jthread watcher([&](std::stop_token done) {
       WatchUsage(times, watches, std::move(done));
     });
-    LoadProgress progress(options_.progress, LoopText(description));
+    LoadProgress progress(options_.progress, LoopText(load));
     end = RunLoad(
         load, RequestMix(mix), calls_, &meter,
         [&](int in_flight) { progress.Show(in_flight, &meter); }, stop_);
@@ -99,33 +95,38 @@ void Bench::RunOne(const LoadOptions& load) {
       LoadClock::now() - times.measured_from(), {}, times.duration);
   BenchRun* run = report_.add_runs();
   *run = Summarize(load, times, mix, meter.figures(), measured);
+  run->set_connections(ConnectionsOf(options_));
+  run->set_interrupted(end == LoadEnd::kStopped);
   if (client.has_begun()) *run->mutable_client() = Summarize(client);
   if (server.has_begun()) *run->mutable_server() = Summarize(server);
-  if (end == LoadEnd::kStopped) report_.set_interrupted(true);
+  if (run->interrupted()) report_.set_interrupted(true);
   on_run_(*run);
+  return run;
 }
 
 void Bench::RunSweep() {
   std::vector<double> rates = options_.sweep_rates;
-  double capacity = 0;
-  LoadOptions load = options_.load;
   if (!options_.sweep.empty()) {
-    load.rate = 0;
-    RunOne(load);
-    capacity = report_.runs(0).goodput_per_second();
+    LoadOptions closed = options_.load;
+    closed.rate = 0;
+    const double capacity = RunOne(closed)->goodput_per_second();
     for (const double factor : options_.sweep) {
       rates.push_back(factor * capacity);
     }
   }
   std::sort(rates.begin(), rates.end());
-  std::vector<BenchRun> runs;
-  for (const double rate : rates) {
-    if (report_.interrupted() || rate <= 0) break;
-    load.rate = rate;
-    RunOne(load);
-    runs.push_back(report_.runs(report_.runs_size() - 1));
+  for (const double rate : rates) RunRung(rate, false);
+  for (int i = 0; i < kSearchSteps && !options_.sweep.empty(); ++i) {
+    RunRung(RateToTry(report_).value_or(0), true);
   }
-  *report_.mutable_sweep() = SummarizeSweep(capacity, runs);
+  *report_.mutable_sweep() = SummarizeSweep(report_);
+}
+
+void Bench::RunRung(double rate, bool searched) {
+  if (report_.interrupted() || rate <= 0) return;
+  LoadOptions load = options_.load;
+  load.rate = rate;
+  RunOne(load)->set_searched(searched);
 }
 
 }  // namespace
@@ -141,7 +142,7 @@ absl::StatusOr<BenchReport> RunBench(const BenchOptions& options,
     if (!usage.ok()) return usage.status();
   }
   const absl::StatusOr<std::unique_ptr<CallMaker>> calls =
-      MakeGrpcCalls(options.server, options.security, options.connections,
+      MakeGrpcCalls(options.server, options.security, ConnectionsOf(options),
                     options.mix.clients, &*workload);
   if (!calls.ok()) return calls.status();
   Bench bench(options, calls->get(), on_run, stop);
@@ -150,7 +151,11 @@ absl::StatusOr<BenchReport> RunBench(const BenchOptions& options,
   } else {
     bench.RunSweep();
   }
-  return bench.TakeReport();
+  BenchReport report = bench.TakeReport();
+  for (const auto& [name, value] : SettingsOf(options)) {
+    (*report.mutable_settings())[name] = value;
+  }
+  return report;
 }
 
 }  // namespace terrane::client

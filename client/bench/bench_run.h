@@ -25,7 +25,7 @@ namespace terrane::client {
 struct BenchOptions {
   std::string server;
   ChannelSecurity security;
-  int connections = 1;
+  std::optional<int> connections;  // default: as ConnectionsOf says
   MixOptions mix;
   WorkloadOptions workload;
   LoadOptions load;
@@ -33,7 +33,8 @@ struct BenchOptions {
   std::chrono::duration<double> duration{10};
   std::chrono::duration<double> deadline{5};
   // A sweep: open loops at these multiples of what a closed loop reaches first,
-  // or at these rates; at most one of them.
+  // and at two rates more, between which the knee lies; or at these rates and
+  // no other. At most one of them.
   std::vector<double> sweep;
   std::vector<double> sweep_rates;
   // Empty when the server's CPU time and memory cannot be read.

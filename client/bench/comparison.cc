@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "client/bench/text_report.h"
 
@@ -13,21 +15,30 @@ namespace {
 
 constexpr double kFormat = 1;
 
-absl::Status CheckSameLoad(const BenchRun& before, const BenchRun& after) {
-  if (before.loop() == after.loop() &&
-      before.concurrency() == after.concurrency() &&
-      before.deadline_ms() == after.deadline_ms()) {
-    return absl::OkStatus();
-  }
-  return absl::InvalidArgumentError(fmt::format(
-      "the reports are of different loads: {}, deadline {} against {}, "
-      "deadline {}",
-      LoopText(before), MillisecondsText(before.deadline_ms()), LoopText(after),
-      MillisecondsText(after.deadline_ms())));
+std::string ValueOf(const LoadSettings& settings, const std::string& name) {
+  const auto found = settings.find(name);
+  return found == settings.end() ? "nothing" : found->second;
 }
 
 std::string RatioText(double before, double after) {
   return before > 0 ? fmt::format("{:.3f}", after / before) : "-";
+}
+
+// Empty when neither report has the figure.
+std::string FigureLine(const ComparedFigure& figure) {
+  if (figure.before <= 0 && figure.after <= 0) return "";
+  return fmt::format("{:<22}{:>14.6g}{:>14.6g}{:>10}{}\n", figure.name,
+                     figure.before, figure.after,
+                     RatioText(figure.before, figure.after),
+                     figure.is_worse ? "  worse" : "");
+}
+
+std::vector<const BenchRun*> GivenRuns(const BenchReport& report) {
+  std::vector<const BenchRun*> runs;
+  for (const BenchRun& run : report.runs()) {
+    if (!run.searched()) runs.push_back(&run);
+  }
+  return runs;
 }
 
 }  // namespace
@@ -48,6 +59,35 @@ absl::StatusOr<BenchReport> ReadReport(const std::string& path) {
   return report;
 }
 
+absl::Status CheckSameLoad(const BenchReport& before,
+                           const LoadSettings& settings) {
+  if (before.interrupted()) {
+    return absl::InvalidArgumentError(
+        "the report to compare with is of a test that was interrupted");
+  }
+  const LoadSettings old(before.settings().begin(), before.settings().end());
+  if (old.empty()) {
+    return absl::InvalidArgumentError(
+        "the report to compare with does not say of which load it is: an "
+        "earlier version wrote it");
+  }
+  std::set<std::string> names;
+  for (const LoadSettings* each : {&old, &settings}) {
+    for (const auto& [name, value] : *each) names.insert(name);
+  }
+  std::string differences;
+  for (const std::string& name : names) {
+    const std::string was = ValueOf(old, name);
+    const std::string is = ValueOf(settings, name);
+    if (was == is) continue;
+    differences += fmt::format("{}{} {} against {}",
+                               differences.empty() ? "" : ", ", name, was, is);
+  }
+  if (differences.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      "the report to compare with is of another load: " + differences);
+}
+
 std::vector<ComparedFigure> Compare(const BenchRun& before,
                                     const BenchRun& after, double tolerance) {
   std::vector<ComparedFigure> figures = {
@@ -57,6 +97,8 @@ std::vector<ComparedFigure> Compare(const BenchRun& before,
       {"p50 ms", before.latency().p50_ms(), after.latency().p50_ms()},
       {"p90 ms", before.latency().p90_ms(), after.latency().p90_ms()},
       {"p99 ms", before.latency().p99_ms(), after.latency().p99_ms()},
+      {"p99 with lost ms", before.latency_with_lost().p99_ms(),
+       after.latency_with_lost().p99_ms()},
       {"p99.9 ms", before.latency().p999_ms(), after.latency().p999_ms()},
       {"first data p50 ms", before.first_data().p50_ms(),
        after.first_data().p50_ms()},
@@ -67,39 +109,32 @@ std::vector<ComparedFigure> Compare(const BenchRun& before,
   for (ComparedFigure& figure : figures) {
     if (figure.name == "goodput/s") {
       figure.is_worse = figure.after < figure.before * (1 - tolerance);
-    } else if (figure.name == "p99 ms") {
-      figure.is_worse = before.has_latency() &&
-                        figure.after > figure.before * (1 + tolerance);
+    } else if (figure.name.starts_with("p99 ")) {
+      figure.is_worse =
+          figure.before > 0 && figure.after > figure.before * (1 + tolerance);
     }
   }
   return figures;
 }
 
-absl::StatusOr<ReportComparison> CompareReports(const BenchReport& before,
-                                                const BenchReport& after,
-                                                double tolerance) {
-  if (before.runs_size() != after.runs_size()) {
-    return absl::InvalidArgumentError(
-        fmt::format("the reports are of different loads: {} runs against {}",
-                    before.runs_size(), after.runs_size()));
-  }
+ReportComparison CompareReports(const BenchReport& before,
+                                const BenchReport& after, double tolerance) {
+  const std::vector<const BenchRun*> old_runs = GivenRuns(before);
+  const std::vector<const BenchRun*> new_runs = GivenRuns(after);
   ReportComparison comparison;
-  for (int i = 0; i < before.runs_size(); ++i) {
-    const absl::Status same = CheckSameLoad(before.runs(i), after.runs(i));
-    if (!same.ok()) return same;
+  // Of a sweep there may be fewer, when nothing was good in the first one.
+  for (std::size_t i = 0; i < std::min(old_runs.size(), new_runs.size()); ++i) {
     comparison.text +=
-        fmt::format("{}\n{:<22}{:>14}{:>14}{:>10}\n", LoopText(after.runs(i)),
+        fmt::format("{}\n{:<22}{:>14}{:>14}{:>10}\n", LoopText(*new_runs[i]),
                     "", "before", "after", "ratio");
     for (const ComparedFigure& figure :
-         Compare(before.runs(i), after.runs(i), tolerance)) {
-      if (figure.before <= 0 && figure.after <= 0) continue;
-      comparison.text += fmt::format("{:<22}{:>14.6g}{:>14.6g}{:>10}{}\n",
-                                     figure.name, figure.before, figure.after,
-                                     RatioText(figure.before, figure.after),
-                                     figure.is_worse ? "  worse" : "");
+         Compare(*old_runs[i], *new_runs[i], tolerance)) {
+      comparison.text += FigureLine(figure);
       comparison.is_worse |= figure.is_worse;
     }
   }
+  comparison.text +=
+      FigureLine({"knee/s", before.sweep().knee(), after.sweep().knee()});
   return comparison;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "client/bench/svg_plot.h"
+#include "client/bench/sweep.h"
 #include "client/bench/text_report.h"
 #include "client/progress.h"
 
@@ -54,13 +55,17 @@ th:first-child,td:first-child,td.text{text-align:left}td.text{white-space:normal
 )";
 
 // The colour of a code's line: green for what went well, ochre for refusals,
-// red for calls that were late, blue for a server that is not there.
-int ColorOf(const std::string& code) {
-  static const std::map<std::string, int> kColors = {
-      {"OK", 0},          {"RESOURCE_EXHAUSTED", 1}, {"DEADLINE_EXCEEDED", 2},
-      {"UNAVAILABLE", 3}, {"DATA_LOSS", 4},          {"CANCELLED", 5}};
-  const auto found = kColors.find(code);
-  return found == kColors.end() ? 5 : found->second;
+// red for calls that were late, blue for a server that is not there, violet for
+// damage, grey for the others.
+PlotColor ColorOf(const std::string& code) {
+  static const std::map<std::string, PlotColor> colours = {
+      {"OK", PlotColor::kGreen},
+      {"RESOURCE_EXHAUSTED", PlotColor::kOchre},
+      {"DEADLINE_EXCEEDED", PlotColor::kRed},
+      {"UNAVAILABLE", PlotColor::kBlue},
+      {"DATA_LOSS", PlotColor::kViolet}};
+  const auto found = colours.find(code);
+  return found == colours.end() ? PlotColor::kGrey : found->second;
 }
 
 // Of an axis: powers of ten and round numbers.
@@ -84,6 +89,11 @@ std::string NumberHtml(const std::string& value, const std::string& what) {
                      EscapeHtml(value), EscapeHtml(what));
 }
 
+// Whether time ran out for some requests.
+bool HasLost(const BenchRun& run) {
+  return run.latency_with_lost().count() > run.latency().count();
+}
+
 std::string NumbersHtml(const BenchRun& run) {
   std::string html = "<div class=\"numbers\">";
   html +=
@@ -93,6 +103,10 @@ std::string NumbersHtml(const BenchRun& run) {
   if (run.has_latency()) {
     html += NumberHtml(MillisecondsText(run.latency().p50_ms()), "p50 latency");
     html += NumberHtml(MillisecondsText(run.latency().p99_ms()), "p99 latency");
+  }
+  if (HasLost(run)) {
+    html += NumberHtml(MillisecondsText(run.latency_with_lost().p99_ms()),
+                       "p99 with what was lost");
   }
   if (run.has_first_data()) {
     html += NumberHtml(MillisecondsText(run.first_data().p50_ms()),
@@ -105,7 +119,7 @@ std::string NumbersHtml(const BenchRun& run) {
   html += NumberHtml(ShortNumber(run.samples_per_second()) + "/s", "samples");
   html += NumberHtml(fmt::format("{:.1f} MiB/s", run.bytes_per_second() / kMib),
                      "data");
-  if (run.has_fairness()) {
+  if (run.fairness().has_jain()) {
     html += NumberHtml(fmt::format("{:.3f}", run.fairness().jain()),
                        "Jain's index of fairness");
   }
@@ -127,7 +141,7 @@ Plot LatencyCurve(const BenchRun& run) {
             .logarithmic = true};
   plot.y = {.label = "latency", .logarithmic = true, .text = TickText};
   double most = 1;
-  const auto add = [&](const char* name, int color,
+  const auto add = [&](const char* name, PlotColor color,
                        const LatencySummary& latency) {
     PlotSeries series{.name = name, .color = color};
     for (const CurvePoint& point : latency.curve()) {
@@ -138,9 +152,14 @@ Plot LatencyCurve(const BenchRun& run) {
     }
     plot.series.push_back(series);
   };
-  if (run.has_refusal()) add("refusals", 1, run.refusal());
-  if (run.has_first_data()) add("first data", 3, run.first_data());
-  if (run.has_latency()) add("whole answer", 0, run.latency());
+  if (run.has_refusal()) add("refusals", PlotColor::kOchre, run.refusal());
+  if (run.has_first_data()) {
+    add("first data", PlotColor::kBlue, run.first_data());
+  }
+  if (HasLost(run)) {
+    add("whole answer, with lost", PlotColor::kRed, run.latency_with_lost());
+  }
+  if (run.has_latency()) add("whole answer", PlotColor::kGreen, run.latency());
   plot.x.range = {1.0, std::max(most, 10.0)};
   for (const auto& [nines, text] :
        {std::pair(1.0, "0"), std::pair(2.0, "50 %"), std::pair(10.0, "90 %"),
@@ -159,7 +178,8 @@ Plot CodesOverTime(const BenchRun& run) {
   plot.y = {.label = "requests/s"};
   const TimeLine& line = run.time_line();
   std::map<std::string, PlotSeries> by_code;
-  PlotSeries not_started{.name = "not started", .color = 5, .dashed = true};
+  PlotSeries not_started{
+      .name = "not started", .color = PlotColor::kGrey, .dashed = true};
   double lost = 0;
   for (int i = 0; i < line.points_size(); ++i) {
     for (const CodeCount& code : line.points(i).codes()) {
@@ -190,8 +210,8 @@ Plot LatencyOverTime(const BenchRun& run) {
   Plot plot{.title = "Latency over time"};
   plot.x = TimeAxis(run.time_line());
   plot.y = {.label = "latency", .logarithmic = true, .text = TickText};
-  PlotSeries p50{.name = "p50", .color = 0};
-  PlotSeries p99{.name = "p99", .color = 1};
+  PlotSeries p50{.name = "p50", .color = PlotColor::kGreen};
+  PlotSeries p99{.name = "p99", .color = PlotColor::kOchre};
   const TimeLine& line = run.time_line();
   for (int i = 0; i < line.points_size(); ++i) {
     const double seconds = (i + 0.5) * line.seconds();
@@ -243,8 +263,9 @@ std::string KindsTable(const BenchRun& run) {
 }
 
 std::string RunHtml(const BenchRun& run) {
-  std::string html = fmt::format("<h2>{}, {:.3g} s</h2>\n",
-                                 EscapeHtml(LoopText(run)), run.seconds());
+  std::string html =
+      fmt::format("<h2>{}, {:.0f} connections, {:.3g} s</h2>\n",
+                  EscapeHtml(LoopText(run)), run.connections(), run.seconds());
   html += NumbersHtml(run) + "<div class=\"plots\">";
   html += PlotHtml(CodesOverTime(run)) + PlotHtml(LatencyOverTime(run)) +
           PlotHtml(LatencyCurve(run)) + "<div>" + CodesTable(run) +
@@ -259,16 +280,20 @@ std::string SweepPlots(const BenchReport& report) {
   Plot latency{.title = "Latency by offered load"};
   latency.x = {.label = "offered requests/s"};
   latency.y = {.label = "latency", .logarithmic = true, .text = TickText};
-  PlotSeries good{
-      .name = "goodput", .color = 0, .filled = true, .has_dots = true};
-  PlotSeries ideal{.name = "all that is offered", .color = 5, .dashed = true};
-  PlotSeries p50{.name = "p50", .color = 0, .has_dots = true};
-  PlotSeries p99{.name = "p99", .color = 1, .has_dots = true};
-  PlotSeries refusal{.name = "p50 of refusals", .color = 3, .has_dots = true};
+  PlotSeries good{.name = "goodput",
+                  .color = PlotColor::kGreen,
+                  .filled = true,
+                  .has_dots = true};
+  PlotSeries ideal{
+      .name = "all that is offered", .color = PlotColor::kGrey, .dashed = true};
+  PlotSeries p50{.name = "p50", .color = PlotColor::kGreen, .has_dots = true};
+  PlotSeries p99{.name = "p99", .color = PlotColor::kOchre, .has_dots = true};
+  PlotSeries refusal{
+      .name = "p50 of refusals", .color = PlotColor::kBlue, .has_dots = true};
   const double peak = report.sweep().peak_goodput();
   ideal.points = {{0, 0}, {1.15 * peak, 1.15 * peak}};
-  for (const BenchRun& run : report.runs()) {
-    if (run.loop() != "open") continue;
+  for (const BenchRun* rung : RungsOf(report)) {
+    const BenchRun& run = *rung;
     const double x = run.offered_per_second();
     good.points.emplace_back(x, run.goodput_per_second());
     p50.points.emplace_back(x, run.latency().p50_ms());
@@ -291,6 +316,10 @@ std::string SweepHtml(const BenchReport& report) {
   html += NumberHtml(sweep.knee() > 0 ? fmt::format("{:.4g}/s", sweep.knee())
                                       : "below the sweep",
                      "knee: 95 % of what is offered is good");
+  if (sweep.beyond_knee() > 0) {
+    html += NumberHtml(fmt::format("{:.4g}/s", sweep.beyond_knee()),
+                       "beyond the knee");
+  }
   html +=
       NumberHtml(fmt::format("{:.4g}/s", sweep.peak_goodput()), "peak goodput");
   html += NumberHtml(fmt::format("{:.0f} %", sweep.peak_goodput() > 0

@@ -4,12 +4,15 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
 #include "absl/time/time.h"
+#include "client/bench/random_number.h"
+#include "client/patience.h"
 
 namespace terrane::client {
 namespace {
@@ -20,8 +23,10 @@ using TimePoint = LoadClock::time_point;
 constexpr milliseconds kTick{100};
 // What is still open so long after its deadline is cut.
 constexpr std::chrono::seconds kGrace{1};
-// Between tries; twice as long after each.
-constexpr milliseconds kFirstWait{20};
+// No request has more tries.
+constexpr std::int64_t kMostTries = 128;
+// Of a caller that found no server, before it asks again.
+constexpr milliseconds kPause{100};
 
 bool WorthAnotherTry(const CallResult& result) {
   return result.code == grpc::StatusCode::UNAVAILABLE ||
@@ -59,13 +64,17 @@ class Load : public std::enable_shared_from_this<Load> {
   bool is_open_loop() const { return options_.rate > 0; }
   int in_flight() const;
   TimePoint At(double seconds) const;
+  TimePoint RetryAt(const OpenRequest& request, const CallResult& result) const;
   // Whether the load is to go on after a tick.
   bool GoesOn(const std::stop_token& stop) const;
-  TimePoint NextEvent(TimePoint tick) const;
+  TimePoint NextEvent(TimePoint tick) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::int64_t TakeNumber();
 
   void StartArrivals();
   void StartRetries();
+  // Callers of a closed loop whose pause is over ask again.
+  void StartPaused();
   void StartNew(TimePoint due);
   // Sends a request's next try.
   void Send(std::int64_t number);
@@ -82,10 +91,12 @@ class Load : public std::enable_shared_from_this<Load> {
   Arrivals arrivals_;  // of the thread of Run
 
   mutable absl::Mutex mutex_;
-  absl::CondVar changed_;  // a retry waits, or the last call is gone
+  absl::CondVar changed_;  // something waits, or the last call is gone
   std::int64_t next_number_ ABSL_GUARDED_BY(mutex_) = 0;
   std::map<std::int64_t, OpenRequest> open_ ABSL_GUARDED_BY(mutex_);
   std::multimap<TimePoint, std::int64_t> retries_ ABSL_GUARDED_BY(mutex_);
+  // When callers that found no server ask again.
+  std::multiset<TimePoint> pauses_ ABSL_GUARDED_BY(mutex_);
   bool ending_ ABSL_GUARDED_BY(mutex_) = false;
 };
 
@@ -97,13 +108,16 @@ LoadEnd Load::Run(const OnTick& on_tick, std::stop_token stop) {
   while (GoesOn(stop)) {
     if (is_open_loop()) StartArrivals();
     StartRetries();
+    StartPaused();
     if (LoadClock::now() >= tick) {
       on_tick(in_flight());
       tick = LoadClock::now() + kTick;
     }
-    const auto wait = NextEvent(tick) - LoadClock::now();
+    // What comes to wait before the lock is seen in NextEvent, what comes after
+    // it signals.
     const absl::MutexLock lock(&mutex_);
-    changed_.WaitWithTimeout(&mutex_, absl::FromChrono(wait));
+    changed_.WaitWithTimeout(
+        &mutex_, absl::FromChrono(NextEvent(tick) - LoadClock::now()));
   }
   const bool stopped = stop.stop_requested();
   CutWhatIsOpen();
@@ -134,8 +148,8 @@ bool Load::GoesOn(const std::stop_token& stop) const {
 TimePoint Load::NextEvent(TimePoint tick) const {
   TimePoint next = tick;
   if (is_open_loop()) next = std::min(next, At(arrivals_.next()));
-  const absl::MutexLock lock(&mutex_);
   if (!retries_.empty()) next = std::min(next, retries_.begin()->first);
+  if (!pauses_.empty()) next = std::min(next, *pauses_.begin());
   return next;
 }
 
@@ -166,6 +180,17 @@ void Load::StartRetries() {
     retries_.erase(retries_.begin(), end);
   }
   for (const std::int64_t number : due) Send(number);
+}
+
+void Load::StartPaused() {
+  std::vector<TimePoint> due;
+  {
+    const absl::MutexLock lock(&mutex_);
+    const auto end = pauses_.upper_bound(LoadClock::now());
+    due.assign(pauses_.begin(), end);
+    pauses_.erase(pauses_.begin(), end);
+  }
+  for (const TimePoint at : due) StartNew(at);
 }
 
 void Load::StartNew(TimePoint due) {
@@ -219,8 +244,23 @@ void Load::OnResult(std::int64_t number, const CallResult& result) {
       return;
     }
     meter_->Ended(request.plan, request.due, request.sent, result);
+    if (!is_open_loop() && result.code == grpc::StatusCode::UNAVAILABLE) {
+      pauses_.insert(LoadClock::now() + kPause);
+      changed_.Signal();
+      return;
+    }
   }
   if (!is_open_loop()) StartNew(LoadClock::now());
+}
+
+TimePoint Load::RetryAt(const OpenRequest& request,
+                        const CallResult& result) const {
+  const std::int64_t position =
+      request.plan.number * kMostTries + request.tries;
+  return LoadClock::now() +
+         WaitBeforeNextTry(
+             request.tries, result.retry_delay,
+             RandomShare(mix_.options().seed, RandomStream::kRetry, position));
 }
 
 bool Load::WaitForRetry(std::int64_t number, const CallResult& result) {
@@ -228,9 +268,7 @@ bool Load::WaitForRetry(std::int64_t number, const CallResult& result) {
   if (ending_ || request.tries > options_.retries || !WorthAnotherTry(result)) {
     return false;
   }
-  const TimePoint at = LoadClock::now() +
-                       kFirstWait * (1 << std::min(request.tries - 1, 10)) +
-                       result.retry_delay.value_or(milliseconds(0));
+  const TimePoint at = RetryAt(request, result);
   if (at >= request.due + meter_->times().deadline) return false;
   meter_->Retried(request.due);
   retries_.emplace(at, number);

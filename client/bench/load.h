@@ -4,7 +4,8 @@
 // The load goes on past the measured time until every measured request has
 // ended, so that the last ones meet the same load as the others; no longer than
 // the deadline and a second. What is then still open is cut, and counted as
-// unfinished.
+// unfinished. A caller of a closed loop that found no server waits a little
+// before it asks again: a server that is gone answers faster than any other.
 #ifndef TERRANE_CLIENT_BENCH_LOAD_H_
 #define TERRANE_CLIENT_BENCH_LOAD_H_
 
@@ -27,8 +28,9 @@ struct LoadOptions {
   int concurrency = 16;
   // Calls in flight of an open loop, at most.
   int max_in_flight = 1024;
-  // Tries after the first, of a call that is refused or finds no server. The
-  // deadline holds for all tries together.
+  // Tries after the first, of a call that is refused or finds no server; at
+  // most 100, with the waits of client/patience.h between. The deadline holds
+  // for all tries together.
   int retries = 0;
 };
 

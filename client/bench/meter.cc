@@ -33,6 +33,7 @@ void LoadMeter::NotStarted(const PlannedRequest& plan,
   if (!IsMeasured(due)) return;
   CountOffer(plan);
   ++figures_.not_started;
+  figures_.latency_with_lost.Record(times_.deadline);
 }
 
 void LoadMeter::Retried(LoadClock::time_point due) {
@@ -51,6 +52,7 @@ void LoadMeter::Ended(const PlannedRequest& plan, LoadClock::time_point due,
     ++slice->codes[result.code];
     if (ok) slice->latency.Record(latency);
   }
+  if (result.code == grpc::StatusCode::DATA_LOSS) ++figures_.damaged;
   if (!IsMeasured(due)) return;
   --open_;
   ++figures_.codes[result.code];
@@ -60,6 +62,8 @@ void LoadMeter::Ended(const PlannedRequest& plan, LoadClock::time_point due,
   }
   if (result.code == grpc::StatusCode::RESOURCE_EXHAUSTED) {
     figures_.refusal.Record(result.end - sent);
+  } else if (result.code == grpc::StatusCode::DEADLINE_EXCEEDED) {
+    figures_.latency_with_lost.Record(std::max(latency, times_.deadline));
   }
   figures_.examples.emplace(result.code, result.message);
 }
@@ -68,6 +72,7 @@ void LoadMeter::Unfinished(LoadClock::time_point due) {
   if (!IsMeasured(due)) return;
   const absl::MutexLock lock(&mutex_);
   ++figures_.unfinished;
+  figures_.latency_with_lost.Record(LoadClock::now() - due);
   --open_;
 }
 
@@ -120,6 +125,7 @@ void LoadMeter::CountGood(const PlannedRequest& plan,
                           LoadClock::duration latency, const CallResult& result,
                           LoadClock::time_point due) {
   figures_.latency.Record(latency);
+  figures_.latency_with_lost.Record(latency);
   if (result.first_data.has_value()) {
     figures_.first_data.Record(*result.first_data - due);
   }
@@ -135,14 +141,14 @@ void LoadMeter::CountGood(const PlannedRequest& plan,
   if (latency <= times_.deadline) ++figures_.good;
 }
 
-double JainIndex(const std::vector<double>& shares) {
+std::optional<double> JainIndex(const std::vector<double>& shares) {
   double sum = 0;
   double squares = 0;
   for (const double share : shares) {
     sum += share;
     squares += share * share;
   }
-  if (squares <= 0) return 1;
+  if (squares <= 0) return std::nullopt;
   return sum * sum / (static_cast<double>(shares.size()) * squares);
 }
 

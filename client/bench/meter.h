@@ -4,7 +4,8 @@
 // warm-up. Every figure but the time line is of those: each is offered once,
 // and ends in exactly one of: a code, not started, unfinished. Latency runs
 // from the moment a request was due, of calls that ended well; a refusal's own
-// latency from the moment it was sent.
+// latency from the moment it was sent. What time ran out for is in a second
+// histogram with them, so that a stall longer than the deadline shows, too.
 //
 // Threads: any.
 #ifndef TERRANE_CLIENT_BENCH_METER_H_
@@ -14,6 +15,7 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,12 +62,15 @@ struct LoadFigures {
   std::int64_t not_started = 0;  // no free slot when they were due
   std::int64_t unfinished = 0;   // cut at the end of the test
   std::int64_t retries = 0;
-  std::int64_t good = 0;  // ended well, verified, within the deadline
+  std::int64_t good = 0;     // ended well, verified, within the deadline
+  std::int64_t damaged = 0;  // DATA_LOSS, measured or not
   CodeCounts codes;
   std::int64_t tiles = 0;
   std::int64_t samples = 0;
   std::int64_t bytes = 0;
   LatencyHistogram latency;
+  // And of those that expired, were not started or are unfinished.
+  LatencyHistogram latency_with_lost;
   LatencyHistogram first_data;  // from due to the first data, of the same calls
   LatencyHistogram refusal;     // of RESOURCE_EXHAUSTED
   std::array<ShareFigures, kRequestKinds> kinds;
@@ -127,9 +132,9 @@ class LoadMeter {
   LoadSlice last_second_ ABSL_GUARDED_BY(mutex_);
 };
 
-// Jain's index of fairness: 1 when all have the same, 1/n when one has all; 1
-// for none.
-double JainIndex(const std::vector<double>& shares);
+// Jain's index of fairness: 1 when all have the same, 1/n when one has all;
+// nothing when none has any.
+std::optional<double> JainIndex(const std::vector<double>& shares);
 
 }  // namespace terrane::client
 

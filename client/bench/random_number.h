@@ -16,7 +16,8 @@ enum class RandomStream : std::uint64_t {
   kHotChoice,
   kRecipe,
   kPlace,
-  kArrival
+  kArrival,
+  kRetry
 };
 
 constexpr std::uint64_t Scramble(std::uint64_t bits) {

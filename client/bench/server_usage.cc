@@ -106,20 +106,18 @@ Usage UsageOfMetricsText(const std::string& text) {
   return usage;
 }
 
-void UsageWatch::Begin() {
-  Look();
-  first_ = last_;
-  has_begun_ = true;
-}
-
-void UsageWatch::Look() {
-  last_ = {std::chrono::steady_clock::now(), source_().value_or(Usage{})};
-  peak_ = std::max(peak_, last_.usage.memory_bytes.value_or(0));
+void UsageWatch::Look(TimePoint now) {
+  const absl::StatusOr<Usage> usage = source_();
+  if (!usage.ok()) return;
+  last_ = {now, *usage};
+  if (!first_.has_value()) first_ = last_;
+  peak_ = std::max(peak_, usage->memory_bytes.value_or(0));
 }
 
 std::optional<double> UsageWatch::cpus() const {
-  const std::chrono::duration<double> time = last_.time - first_.time;
-  const std::optional<double> begin = first_.usage.cpu_seconds;
+  if (!first_.has_value()) return std::nullopt;
+  const std::chrono::duration<double> time = last_.time - first_->time;
+  const std::optional<double> begin = first_->usage.cpu_seconds;
   const std::optional<double> end = last_.usage.cpu_seconds;
   if (!begin.has_value() || !end.has_value() || time.count() <= 0) {
     return std::nullopt;

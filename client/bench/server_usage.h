@@ -1,8 +1,8 @@
 // CPU time and memory of the server under test and of the load tester itself.
 //
 // The server's come from /proc, by its process id on this machine, or from its
-// metrics over HTTP (process_cpu_seconds_total or terrane_cpu_seconds_total,
-// and terrane_memory_bytes or process_resident_memory_bytes).
+// metrics over HTTP (process_cpu_seconds_total, and terrane_memory_bytes or
+// process_resident_memory_bytes).
 //
 // Belongs to one thread. Errors: NOT_FOUND, naming what could not be read.
 #ifndef TERRANE_CLIENT_BENCH_SERVER_USAGE_H_
@@ -34,14 +34,15 @@ Usage UsageOfMetricsText(const std::string& text);
 // What a source shows from its first reading to its last.
 class UsageWatch {
  public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
   explicit UsageWatch(UsageSource source) : source_(std::move(source)) {}
 
-  // Reads the source; what it cannot read is not known.
-  void Begin();
-  void Look();
-  bool has_begun() const { return has_begun_; }
+  // Reads the source. When it cannot be read, what it said last stands.
+  void Look(TimePoint now);
+  bool has_begun() const { return first_.has_value(); }
 
-  // CPUs that were kept busy between Begin and the last Look, in the mean.
+  // CPUs that were kept busy from the first reading to the last, in the mean.
   std::optional<double> cpus() const;
   std::optional<double> memory_bytes() const {
     return last_.usage.memory_bytes;
@@ -50,15 +51,14 @@ class UsageWatch {
 
  private:
   struct Reading {
-    std::chrono::steady_clock::time_point time;
+    TimePoint time;
     Usage usage;
   };
 
   UsageSource source_;
-  Reading first_;
+  std::optional<Reading> first_;
   Reading last_;
   double peak_ = 0;
-  bool has_begun_ = false;
 };
 
 }  // namespace terrane::client

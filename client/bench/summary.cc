@@ -1,8 +1,10 @@
 #include "client/bench/summary.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace terrane::client {
 namespace {
@@ -10,8 +12,6 @@ namespace {
 using std::chrono::duration;
 
 constexpr double kNsOfMs = 1e6;
-// What a server is said to serve without queueing.
-constexpr double kServedShare = 0.95;
 // Points of a curve: to each nine of a share as many.
 constexpr int kNines = 5;
 constexpr int kPointsOfANine = 12;
@@ -55,6 +55,21 @@ LatencySummary Summarize(const LatencyHistogram& histogram) {
   return summary;
 }
 
+void AddLatencies(const LoadFigures& figures, BenchRun* run) {
+  if (figures.latency.count() > 0) {
+    *run->mutable_latency() = Summarize(figures.latency);
+  }
+  if (figures.latency_with_lost.count() > 0) {
+    *run->mutable_latency_with_lost() = Summarize(figures.latency_with_lost);
+  }
+  if (figures.first_data.count() > 0) {
+    *run->mutable_first_data() = Summarize(figures.first_data);
+  }
+  if (figures.refusal.count() > 0) {
+    *run->mutable_refusal() = Summarize(figures.refusal);
+  }
+}
+
 void AddKinds(const LoadFigures& figures, BenchRun* run) {
   for (std::size_t i = 0; i < kRequestKinds; ++i) {
     const ShareFigures& kind = figures.kinds[i];
@@ -71,22 +86,22 @@ void AddKinds(const LoadFigures& figures, BenchRun* run) {
 void AddFairness(const MixOptions& mix, const LoadFigures& figures,
                  BenchRun* run) {
   if (figures.clients.size() < 2) return;
-  FairnessSummary* fairness = run->mutable_fairness();
-  std::vector<double> good;
-  double least = 1;
+  FairnessSummary fairness;
+  std::vector<double> shares;
   for (std::size_t i = 0; i < figures.clients.size(); ++i) {
     const ShareFigures& client = figures.clients[i];
-    ClientSummary* summary = fairness->add_clients();
+    ClientSummary* summary = fairness.add_clients();
     summary->set_offered(Count(client.offered));
     summary->set_good(Count(client.good));
-    if (mix.greedy_share > 0 && i == 0) continue;
-    good.push_back(Count(client.good));
-    if (client.offered > 0) {
-      least = std::min(least, Count(client.good) / Count(client.offered));
-    }
+    const bool is_greedy = mix.greedy_share > 0 && i == 0;
+    if (is_greedy || client.offered == 0) continue;
+    shares.push_back(Count(client.good) / Count(client.offered));
   }
-  fairness->set_jain(JainIndex(good));
-  fairness->set_least_served(least);
+  if (shares.empty()) return;
+  const std::optional<double> jain = JainIndex(shares);
+  if (jain.has_value()) fairness.set_jain(*jain);
+  fairness.set_least_served(*std::min_element(shares.begin(), shares.end()));
+  *run->mutable_fairness() = std::move(fairness);
 }
 
 // Whole slices of warm-up and measured time.
@@ -154,6 +169,7 @@ BenchRun Summarize(const LoadOptions& options, const LoadTimes& times,
   run.set_unfinished(Count(figures.unfinished));
   run.set_good(Count(figures.good));
   run.set_retries(Count(figures.retries));
+  run.set_damaged(Count(figures.damaged));
   AddCodes(figures, &run);
   run.set_offered_per_second(rate(figures.offered));
   run.set_completed_per_second(rate(figures.latency.count()));
@@ -161,15 +177,7 @@ BenchRun Summarize(const LoadOptions& options, const LoadTimes& times,
   run.set_tiles_per_second(rate(figures.tiles));
   run.set_samples_per_second(rate(figures.samples));
   run.set_bytes_per_second(rate(figures.bytes));
-  if (figures.latency.count() > 0) {
-    *run.mutable_latency() = Summarize(figures.latency);
-  }
-  if (figures.first_data.count() > 0) {
-    *run.mutable_first_data() = Summarize(figures.first_data);
-  }
-  if (figures.refusal.count() > 0) {
-    *run.mutable_refusal() = Summarize(figures.refusal);
-  }
+  AddLatencies(figures, &run);
   AddKinds(figures, &run);
   AddFairness(mix, figures, &run);
   AddTimeLine(times, figures, &run);
@@ -182,20 +190,6 @@ UsageSummary Summarize(const UsageWatch& watch) {
   summary.set_memory_bytes(watch.memory_bytes().value_or(0));
   summary.set_memory_peak_bytes(watch.memory_peak_bytes());
   return summary;
-}
-
-BenchSweep SummarizeSweep(double capacity, const std::vector<BenchRun>& runs) {
-  BenchSweep sweep;
-  sweep.set_capacity(capacity);
-  bool keeps_up = true;
-  for (const BenchRun& run : runs) {
-    keeps_up = keeps_up && run.good() >= kServedShare * run.offered();
-    if (keeps_up) sweep.set_knee(run.offered_per_second());
-    sweep.set_peak_goodput(
-        std::max(sweep.peak_goodput(), run.goodput_per_second()));
-    sweep.set_last_goodput(run.goodput_per_second());
-  }
-  return sweep;
 }
 
 }  // namespace terrane::client

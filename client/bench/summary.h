@@ -4,7 +4,6 @@
 #define TERRANE_CLIENT_BENCH_SUMMARY_H_
 
 #include <string>
-#include <vector>
 
 #include "client/bench/load.h"
 #include "client/bench/meter.h"
@@ -24,10 +23,6 @@ BenchRun Summarize(const LoadOptions& options, const LoadTimes& times,
 
 // 0 stands for what the source did not say.
 UsageSummary Summarize(const UsageWatch& watch);
-
-// Of open loops, from the lowest rate; `capacity` is 0 when it was not
-// measured.
-BenchSweep SummarizeSweep(double capacity, const std::vector<BenchRun>& runs);
 
 }  // namespace terrane::client
 

@@ -87,9 +87,10 @@ std::vector<std::pair<double, std::string>> TicksOf(
   };
   std::vector<std::pair<double, std::string>> ticks;
   if (axis.logarithmic) {
-    for (double value = range.first; value <= range.second * 1.001;
-         value *= 10) {
+    double value = range.first;
+    while (value <= range.second * 1.001) {
       ticks.emplace_back(value, text(value));
+      value *= 10;
     }
     return ticks;
   }
@@ -132,6 +133,9 @@ std::string GridSvg(const Plot& plot, const Scale& x, const Scale& y,
   return svg;
 }
 
+// The n of its class s<n>.
+int ClassOf(const PlotSeries& series) { return static_cast<int>(series.color); }
+
 // One run of points without a break.
 std::string StretchSvg(const PlotSeries& series,
                        const std::vector<std::pair<double, double>>& pixels) {
@@ -144,16 +148,16 @@ std::string StretchSvg(const PlotSeries& series,
   if (series.filled) {
     svg +=
         fmt::format(R"(<path class="s{} fill" d="{}L{:.1f} {}L{:.1f} {}Z"/>)",
-                    series.color, path, pixels.back().first, kHeight - kBottom,
-                    pixels.front().first, kHeight - kBottom);
+                    ClassOf(series), path, pixels.back().first,
+                    kHeight - kBottom, pixels.front().first, kHeight - kBottom);
   }
-  svg += fmt::format(R"(<path class="s{} line{}" d="{}"/>)", series.color,
+  svg += fmt::format(R"(<path class="s{} line{}" d="{}"/>)", ClassOf(series),
                      series.dashed ? " dashed" : "", path);
   if (series.has_dots || pixels.size() == 1) {
     for (const auto& [x, y] : pixels) {
       svg += fmt::format(
           R"(<circle class="s{} dot" cx="{:.1f}" cy="{:.1f}" r="3.5"/>)",
-          series.color, x, y);
+          ClassOf(series), x, y);
     }
   }
   return svg;
@@ -178,7 +182,7 @@ std::string LegendHtml(const Plot& plot) {
   std::string html = "<span class=\"legend\">";
   for (const PlotSeries& series : plot.series) {
     html +=
-        fmt::format(R"(<span><i class="s{}{}"></i>{}</span>)", series.color,
+        fmt::format(R"(<span><i class="s{}{}"></i>{}</span>)", ClassOf(series),
                     series.dashed ? " dashed" : "", EscapeHtml(series.name));
   }
   return html + "</span>";

@@ -26,9 +26,12 @@ struct PlotAxis {
   std::function<std::string(double)> text;
 };
 
+// In the order of the classes s0, s1, ...
+enum class PlotColor { kGreen, kOchre, kRed, kBlue, kViolet, kGrey };
+
 struct PlotSeries {
   std::string name;
-  int color = 0;  // class s0, s1, ...
+  PlotColor color = PlotColor::kGreen;
   std::vector<std::pair<double, double>> points;
   bool filled = false;    // down to the axis
   bool dashed = false;    // a line to compare with

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "client/bench/sweep.h"
 #include "client/progress.h"
 
 namespace terrane::client {
@@ -50,10 +51,31 @@ std::string CodeLines(const BenchRun& run) {
   return text;
 }
 
+std::string FairnessLine(const FairnessSummary& fairness) {
+  if (!fairness.has_jain()) {
+    return fmt::format("fairness     none of {} clients was served\n",
+                       fairness.clients_size());
+  }
+  return fmt::format(
+      "fairness     Jain index {:.4f} over {} clients, the least served got "
+      "{}\n",
+      fairness.jain(), fairness.clients_size(),
+      PercentText(fairness.least_served(), 1));
+}
+
 std::string UsageLine(const char* name, const UsageSummary& usage) {
   return fmt::format("{:<12} {:.2f} CPUs, {:.0f} MiB, {:.0f} MiB at most\n",
                      name, usage.cpus(), usage.memory_bytes() / kMib,
                      usage.memory_peak_bytes() / kMib);
+}
+
+std::string KneeText(const BenchSweep& sweep) {
+  if (sweep.knee() <= 0) return "The lowest rate is beyond the knee. ";
+  if (sweep.beyond_knee() <= 0) {
+    return fmt::format("No knee up to {:.1f}/s offered. ", sweep.knee());
+  }
+  return fmt::format("Knee at {:.1f}/s offered; {:.1f}/s is too much. ",
+                     sweep.knee(), sweep.beyond_knee());
 }
 
 }  // namespace
@@ -65,23 +87,31 @@ std::string MillisecondsText(double ms) {
   return fmt::format("{:.0f} us", ms * 1000);
 }
 
+std::string LoopText(const LoadOptions& load) {
+  return load.rate > 0
+             ? fmt::format("open loop, {:.4g} requests/s", load.rate)
+             : fmt::format("closed loop, {} callers", load.concurrency);
+}
+
 std::string LoopText(const BenchRun& run) {
-  return run.loop() == "open"
-             ? fmt::format("open loop, {:.4g} requests/s", run.rate())
-             : fmt::format("closed loop, {:.0f} callers", run.concurrency());
+  return LoopText(LoadOptions{
+      .rate = run.rate(), .concurrency = static_cast<int>(run.concurrency())});
 }
 
 std::string RunText(const BenchRun& run) {
   std::string text = fmt::format(
-      "{}, {:.3g} s measured, deadline {}\n"
+      "{}, {:.0f} connections, {:.3g} s measured, deadline {}\n"
       "goodput      {:.1f}/s of {:.1f}/s offered ({}), {:.1f}/s ended well\n"
       "data         {}tiles/s, {}samples/s, {:.1f} MiB/s\n",
-      LoopText(run), run.seconds(), MillisecondsText(run.deadline_ms()),
-      run.goodput_per_second(), run.offered_per_second(),
-      PercentText(run.good(), run.offered()), run.completed_per_second(),
-      ShortNumber(run.tiles_per_second()),
+      LoopText(run), run.connections(), run.seconds(),
+      MillisecondsText(run.deadline_ms()), run.goodput_per_second(),
+      run.offered_per_second(), PercentText(run.good(), run.offered()),
+      run.completed_per_second(), ShortNumber(run.tiles_per_second()),
       ShortNumber(run.samples_per_second()), run.bytes_per_second() / kMib);
   if (run.has_latency()) text += LatencyLine("latency", run.latency());
+  if (run.latency_with_lost().count() > run.latency().count()) {
+    text += LatencyLine("with lost", run.latency_with_lost());
+  }
   if (run.has_first_data()) text += LatencyLine("first data", run.first_data());
   if (run.has_refusal()) text += LatencyLine("refusals", run.refusal());
   text += fmt::format("requests     {:.0f}", run.offered());
@@ -96,11 +126,7 @@ std::string RunText(const BenchRun& run) {
     }
   }
   if (run.has_fairness()) {
-    text += fmt::format(
-        "fairness     Jain index {:.4f} over {} clients, the least served got "
-        "{}\n",
-        run.fairness().jain(), run.fairness().clients_size(),
-        PercentText(run.fairness().least_served(), 1));
+    text += FairnessLine(run.fairness());
   }
   if (run.has_server()) text += UsageLine("server", run.server());
   if (run.has_client()) text += UsageLine("this client", run.client());
@@ -113,8 +139,8 @@ std::string SweepMarkdown(const BenchReport& report) {
       "| offered/s | of capacity | goodput/s | good | refused | late or cut | "
       "p50 | p99 | refusal p50 | least served |\n"
       "|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
-  for (const BenchRun& run : report.runs()) {
-    if (run.loop() != "open") continue;
+  for (const BenchRun* rung : RungsOf(report)) {
+    const BenchRun& run = *rung;
     const double refused = CountOf(run, "RESOURCE_EXHAUSTED");
     const auto ms = [](bool known, double value) {
       return known ? MillisecondsText(value) : std::string("-");
@@ -138,9 +164,7 @@ std::string SweepMarkdown(const BenchReport& report) {
   if (sweep.capacity() > 0) {
     text += fmt::format("Capacity {:.1f}/s (closed loop). ", sweep.capacity());
   }
-  text += sweep.knee() > 0
-              ? fmt::format("Knee at {:.1f}/s offered. ", sweep.knee())
-              : "The lowest rate is beyond the knee. ";
+  text += KneeText(sweep);
   text += fmt::format(
       "Peak goodput {:.1f}/s; at the highest rate {:.1f}/s, {} of it.\n",
       sweep.peak_goodput(), sweep.last_goodput(),

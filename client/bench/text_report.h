@@ -5,11 +5,13 @@
 
 #include <string>
 
+#include "client/bench/load.h"
 #include "client/bench_report.pb.h"
 
 namespace terrane::client {
 
 // "closed loop, 16 callers", "open loop, 120 requests/s".
+std::string LoopText(const LoadOptions& load);
 std::string LoopText(const BenchRun& run);
 
 // One run, in some twenty lines.

@@ -10,6 +10,8 @@
 #include "client/bench/bench_run.h"
 #include "client/bench/comparison.h"
 #include "client/bench/html_report.h"
+#include "client/bench/load_settings.h"
+#include "client/bench/outcome.h"
 #include "client/bench/text_report.h"
 #include "client/commands/bench_options.h"
 #include "client/commands/command.h"
@@ -25,12 +27,16 @@ constexpr char kFooter[] = R"(Examples:
   terrane bench --mix tiles=8,profiles=1,surfaces=1,trees=1,flowers=1 --cold 0.2
   terrane bench --sweep 0.5,1,2,4,8 --deadline 0.5s --clients 4 --html sweep.html
   terrane bench --concurrency 32 --compare run.json --tolerance 0.05
-Times take a unit: 500ms, 10s, 2m. A request that a verifier finds damaged counts
-as DATA_LOSS. Exit codes: 0 ok, 1 error, 2 usage, 3 worse than --compare,
-4 unreachable, 130 interrupted (with the results so far).)";
+Times take a unit: 500ms, 10s, 2m. An answer that a verifier finds damaged counts
+as DATA_LOSS. Exit codes: 0 ok; 1 error, any answer damaged, or no call that ended
+well; 2 usage, or --compare with the report of another load; 3 worse than --compare;
+4 unreachable, or nothing but UNAVAILABLE came; 130 interrupted (with the results so
+far). Reports are written in all of these cases once the load has begun.)";
 
 // --compare: goodput fell or latency rose.
 constexpr int kExitWorse = 3;
+// Calls that terrane-server takes of one connection.
+constexpr int kServerCalls = 256;
 
 std::string NowText() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
@@ -50,29 +56,39 @@ absl::Status WriteReports(const BenchCommand& command,
   return status;
 }
 
-// Compares with the older report; answers the exit code.
-int CompareWith(const BenchCommand& command, const BenchReport& before,
-                const BenchReport& after, std::ostream* text) {
-  const absl::StatusOr<ReportComparison> comparison =
-      CompareReports(before, after, command.tolerance);
-  if (!comparison.ok()) return ReportStatus(comparison.status());
-  *text << comparison->text;
-  return comparison->is_worse ? kExitWorse : kExitOk;
+// A queue in this process looks like the server's latency.
+void WarnOfQueue(const BenchOptions& options) {
+  const int calls = CallsOfAConnection(options);
+  if (calls <= kServerCalls) return;
+  std::cerr << fmt::format(
+      "terrane: warning: up to {} calls to a connection, of which a server "
+      "takes {}: the others wait here; give more --connections\n",
+      calls, kServerCalls);
 }
 
 int Run(const BenchCommand& command, const std::string& options_text,
         std::stop_token stop) {
-  // Before the load: a report that is missing must not cost a run.
+  // Before the load: a report that is missing, or of another load, must not
+  // cost a run.
+  const BenchOptions options = OptionsOf(command);
   absl::StatusOr<BenchReport> before = BenchReport();
-  if (!command.compare.empty()) before = ReadReport(command.compare);
-  if (!before.ok()) return ReportStatus(before.status());
+  if (!command.compare.empty()) {
+    before = ReadReport(command.compare);
+    if (!before.ok()) return ReportStatus(before.status());
+    const absl::Status same = CheckSameLoad(*before, SettingsOf(options));
+    if (!same.ok()) {
+      ReportStatus(same);
+      return kExitUsage;
+    }
+  }
+  WarnOfQueue(options);
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
   // JSON on standard output leaves no room for text there.
   std::ostream& text =
       command.json == "-" || command.html == "-" ? std::cerr : std::cout;
   const std::string started = NowText();
   absl::StatusOr<BenchReport> report = RunBench(
-      OptionsOf(command), backend.get(),
+      options, backend.get(),
       [&](const BenchRun& run) { text << RunText(run) << std::endl; }, stop);
   if (!report.ok()) return ReportStatus(report.status());
   report->set_format(1);
@@ -83,9 +99,13 @@ int Run(const BenchCommand& command, const std::string& options_text,
   if (report->has_sweep()) text << SweepMarkdown(*report);
   const absl::Status written = WriteReports(command, *report);
   if (!written.ok()) return ReportStatus(written);
-  if (report->interrupted()) return kExitInterrupted;
+  const absl::Status outcome = OutcomeOf(*report);
+  if (!outcome.ok()) return ReportStatus(outcome);
   if (command.compare.empty()) return kExitOk;
-  return CompareWith(command, *before, *report, &text);
+  const ReportComparison comparison =
+      CompareReports(*before, *report, command.tolerance);
+  text << comparison.text;
+  return comparison.is_worse ? kExitWorse : kExitOk;
 }
 
 // The options that were given, on one line.

@@ -38,8 +38,33 @@ std::string CheckMix(const std::string& text) {
   return std::string(ParseMix(text).status().message());
 }
 
+constexpr char kLoadGroup[] = "Load";
+
+// `rate` is the option of a single open loop.
+void AddSweepOptions(CLI::App* command, CLI::Option* rate,
+                     BenchOptions* bench) {
+  CLI::Option* sweep =
+      command
+          ->add_option("--sweep", bench->sweep,
+                       "Open loops at these multiples of what the closed loop "
+                       "reaches first, and two more to find the knee")
+          ->delimiter(',')
+          ->check(CLI::Range(1e-3, 1e3))
+          ->type_name("FACTOR,...")
+          ->excludes(rate)
+          ->group(kLoadGroup);
+  command
+      ->add_option("--sweep-rates", bench->sweep_rates,
+                   "Open loops at these requests a second, and no other")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-3, 1e6))
+      ->type_name("RATE,...")
+      ->excludes(rate)
+      ->excludes(sweep)
+      ->group(kLoadGroup);
+}
+
 void AddLoadOptions(CLI::App* command, BenchCommand* options) {
-  constexpr char kGroup[] = "Load";
   LoadOptions* load = &options->bench.load;
   CLI::Option* callers =
       command
@@ -47,65 +72,47 @@ void AddLoadOptions(CLI::App* command, BenchCommand* options) {
                        "Closed loop: callers, each asks again when answered")
           ->check(CLI::Range(1, 10'000))
           ->capture_default_str()
-          ->group(kGroup);
+          ->group(kLoadGroup);
   CLI::Option* rate =
       command
           ->add_option("--rate", load->rate,
                        "Open loop: requests a second, whatever the answers")
           ->check(CLI::Range(1e-3, 1e6))
           ->excludes(callers)
-          ->group(kGroup);
+          ->group(kLoadGroup);
   command
       ->add_option("--arrivals", load->arrivals,
                    "Open loop: poisson (independent callers) or even")
       ->transform(OneOf(kArrivalKinds))
       ->type_name("NAME")
       ->default_str("poisson")
-      ->group(kGroup);
+      ->group(kLoadGroup);
   command
       ->add_option("--max-in-flight", load->max_in_flight,
                    "Open loop: more calls than that are not started, and "
                    "counted")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str()
-      ->group(kGroup);
-  CLI::Option* sweep =
-      command
-          ->add_option("--sweep", options->bench.sweep,
-                       "Open loops at these multiples of what the closed loop "
-                       "reaches first")
-          ->delimiter(',')
-          ->check(CLI::Range(1e-3, 1e3))
-          ->type_name("FACTOR,...")
-          ->excludes(rate)
-          ->group(kGroup);
-  command
-      ->add_option("--sweep-rates", options->bench.sweep_rates,
-                   "Open loops at these requests a second")
-      ->delimiter(',')
-      ->check(CLI::Range(1e-3, 1e6))
-      ->type_name("RATE,...")
-      ->excludes(rate)
-      ->excludes(sweep)
-      ->group(kGroup);
+      ->group(kLoadGroup);
+  AddSweepOptions(command, rate, &options->bench);
   AddTime(command, "--duration", &options->duration_s, "Measured time of a run",
-          0.01, kGroup);
+          0.01, kLoadGroup);
   AddTime(command, "--warm-up", &options->warm_up_s,
-          "Load before it that is not measured", 0, kGroup);
+          "Load before it that is not measured", 0, kLoadGroup);
   AddTime(command, "--deadline", &options->deadline_s,
-          "Of each call, from the moment it was due", 1e-3, kGroup);
+          "Of each call, from the moment it was due", 1e-3, kLoadGroup);
   command
       ->add_option("--retry", load->retries,
                    "Tries after the first, when refused or not reached")
       ->check(CLI::Range(0, 100))
       ->capture_default_str()
-      ->group(kGroup);
+      ->group(kLoadGroup);
   command
       ->add_option("--connections", options->bench.connections,
-                   "TCP connections (to each replica)")
+                   "TCP connections to each replica (default: one for each "
+                   "caller, up to 8, and one for every 100 calls in flight)")
       ->check(CLI::Range(1, 1024))
-      ->capture_default_str()
-      ->group(kGroup);
+      ->group(kLoadGroup);
 }
 
 void AddMixOptions(CLI::App* command, BenchCommand* options) {
