@@ -168,7 +168,8 @@ class GrpcCall : public LoadCall {
       result_.code = grpc::StatusCode::DATA_LOSS;
       result_.message = std::string(verified.message());
     } else if (!status.ok()) {
-      const RemoteError error = DecodeStatus(status);
+      const RemoteError error =
+          DecodeStatus(status, context_.GetServerTrailingMetadata());
       result_.code = status.error_code();
       result_.message = std::string(error.status.message());
       result_.retry_delay = error.retry_delay;

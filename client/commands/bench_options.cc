@@ -261,8 +261,8 @@ void AddReportOptions(CLI::App* command, BenchCommand* options) {
 
 void AddBenchOptions(CLI::App* command, BenchCommand* options) {
   AddConnectionOptions(command, &options->connection);
-  // Only a server can be put under load.
-  for (const char* name : {"--local", "--threads"}) {
+  // Only a server can be put under load, and what stalls is to be seen.
+  for (const char* name : {"--local", "--threads", "--stall-seconds"}) {
     command->remove_option(command->get_option(name));
   }
   AddLoadOptions(command, options);
