@@ -300,8 +300,8 @@ class BenchTest(unittest.TestCase):
         server, address = start_server("--workers", "1", "--max-streams", "1")
         try:
             run = self.report(
-                "--rate", 150, "--duration", "1s", "--deadline", "500ms", "--tile-size", 1024, "--cold", 1,
-                "--tiles-per-stream", 4, server=address)["runs"][0]
+                "--rate", 150, "--duration", "1s", "--tile-size", 1024, "--cold", 1, "--tiles-per-stream", 4, *NO_HURRY,
+                server=address)["runs"][0]
         finally:
             stop_server(server)
         self.assert_sums(run)
