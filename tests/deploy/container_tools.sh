@@ -99,6 +99,38 @@ wait_ready() {
   fail "$1 does not answer."
 }
 
+# What the process $1 may do that a replica must not, a line each; nothing for a confined one.
+liberties() {
+  local status="/proc/$1/status"
+  grep -q '^Uid:\s*65532\s' "${status}" || echo "it is somebody"
+  grep -q '^CapEff:\s*0*$' "${status}" || echo "it has capabilities"
+  grep -q '^CapBnd:\s*0*$' "${status}" || echo "it may get capabilities"
+  grep -q '^NoNewPrivs:\s*1$' "${status}" || echo "it may get privileges"
+  # Of a line: which directory is mounted where, how.
+  awk '$5 == "/" { how = $6 } END { exit how !~ /^ro(,|$)/ }' "/proc/$1/mountinfo" || echo "its root can be written"
+}
+
+# The process of a container.
+process_of() { podman inspect "$1" --format '{{.State.Pid}}'; }
+
+# A container is confined, as the process inside sees it; one that nothing was said of is not.
+confined() {
+  local found free
+  found="$(liberties "$(process_of "$1")")"
+  [[ -z "${found}" ]] || fail "the server is not confined: ${found}."
+  free="$(podman run --detach --user 0:0 --network none "${server_image}")"
+  found="$(liberties "$(process_of "${free}")")"
+  podman rm --force --time 0 "${free}" >/dev/null
+  (($(wc -l <<<"${found}") == 5)) || fail "of a container that is not confined only this is seen: ${found}."
+}
+
+# The server whose HTTP port is at $1 has taken the control group's limit, $2 MiB, for its own.
+memory_limited() {
+  local limit
+  limit="$("${within[@]}" curl --silent "$1/metrics" | awk '$1 == "terrane_memory_limit_bytes" { printf "%.0f", $2 }')"
+  ((${limit:-0} == $2 << 20)) || fail "the server takes its memory limit for ${limit:-no} bytes."
+}
+
 # Heights from the server at $1 are those that the terrane $2 makes here, byte for byte.
 same_heights() {
   local folder world=(terrain --seed 7 --level 6 --window "0,0,700,500")
