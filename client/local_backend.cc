@@ -191,8 +191,8 @@ absl::StatusOr<v1::GetHeightsResponse> LocalBackend::GetHeights(
 }
 
 absl::StatusOr<v1::EstimateTilesResponse> LocalBackend::EstimateTiles(
-    const v1::EstimateTilesRequest& request, std::stop_token) {
-  return actor_->EstimateTiles(request);
+    const v1::EstimateTilesRequest& request, std::stop_token stop) {
+  return actor_->EstimateTiles(request, std::move(stop));
 }
 
 absl::StatusOr<v1::GetPresetResponse> LocalBackend::GetPreset(

@@ -1,5 +1,7 @@
 #include "client/local_backend_renders.h"
 
+#include <utility>
+
 #include "client/local_backend_run.h"
 #include "client/render_verifier.h"
 
@@ -17,8 +19,8 @@ absl::Status LocalRenders::StreamRender(const v1::StreamRenderRequest& request,
 }
 
 absl::StatusOr<v1::EstimateRenderResponse> LocalRenders::EstimateRender(
-    const v1::EstimateRenderRequest& request, std::stop_token) {
-  return maker_->Estimate(request);
+    const v1::EstimateRenderRequest& request, std::stop_token stop) {
+  return maker_->Estimate(request, std::move(stop));
 }
 
 }  // namespace terrane::client

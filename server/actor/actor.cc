@@ -77,7 +77,7 @@ class TerrainActor : public Actor {
   absl::StatusOr<v1::GetHeightsResponse> GetHeights(
       const v1::GetHeightsRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::EstimateTilesResponse> EstimateTiles(
-      const v1::EstimateTilesRequest& request) override;
+      const v1::EstimateTilesRequest& request, std::stop_token stop) override;
   absl::StatusOr<v1::GetPresetResponse> GetPreset(
       const v1::GetPresetRequest& request) override;
   v1::GetServerInfoResponse GetServerInfo() override;
@@ -242,13 +242,14 @@ ReadChoice WithoutConditioning(ReadChoice choice) {
 }
 
 absl::StatusOr<v1::EstimateTilesResponse> TerrainActor::EstimateTiles(
-    const v1::EstimateTilesRequest& request) {
+    const v1::EstimateTilesRequest& request, std::stop_token stop) {
   const auto planned = Plan(request.request(), "request.");
   if (!planned.ok()) return planned.status();
   const TilePlan& plan = planned->plan;
   const core::PreparationCost preparation =
       core::Terrain::EstimatePreparation(planned->choice.read.spec);
-  const auto prepared = Prepare(WithoutConditioning(planned->choice), {});
+  const auto prepared =
+      Prepare(WithoutConditioning(planned->choice), {std::move(stop), {}});
   if (!prepared.ok()) return prepared.status();
   v1::EstimateTilesResponse estimate;
   const TileWork work = WorkOf(*(*prepared)->terrain, plan);

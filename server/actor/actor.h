@@ -89,7 +89,7 @@ class Actor {
   virtual absl::StatusOr<v1::GetHeightsResponse> GetHeights(
       const v1::GetHeightsRequest& request, std::stop_token stop) = 0;
   virtual absl::StatusOr<v1::EstimateTilesResponse> EstimateTiles(
-      const v1::EstimateTilesRequest& request) = 0;
+      const v1::EstimateTilesRequest& request, std::stop_token stop) = 0;
   virtual absl::StatusOr<v1::GetPresetResponse> GetPreset(
       const v1::GetPresetRequest& request) = 0;
   virtual v1::GetServerInfoResponse GetServerInfo() = 0;

@@ -72,13 +72,13 @@ OpenedRun<v1::StreamRenderResponse> RenderMaker::Open(
 }
 
 absl::StatusOr<v1::EstimateRenderResponse> RenderMaker::Estimate(
-    const v1::EstimateRenderRequest& request) const {
+    const v1::EstimateRenderRequest& request, std::stop_token stop) const {
   core::Violations violations;
   const std::string prefix = "request.";
   const RenderPlan plan =
       ReadRenderPlan(request.request(), limits_, prefix, &violations);
-  const auto size =
-      EstimateScene(request.request(), {limits_, prefix, &violations, {}});
+  const auto size = EstimateScene(
+      request.request(), {limits_, prefix, &violations, std::move(stop)});
   const absl::Status fault = FaultOf(violations, size.status());
   if (!fault.ok()) return fault;
   v1::EstimateRenderResponse estimate;

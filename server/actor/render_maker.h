@@ -34,7 +34,7 @@ class RenderMaker {
   OpenedRun<v1::StreamRenderResponse> Open(
       const v1::StreamRenderRequest& request, std::stop_token stop) const;
   absl::StatusOr<v1::EstimateRenderResponse> Estimate(
-      const v1::EstimateRenderRequest& request) const;
+      const v1::EstimateRenderRequest& request, std::stop_token stop) const;
 
  private:
   OpenedScene OpenScene(const v1::StreamRenderRequest& request,

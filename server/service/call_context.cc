@@ -75,6 +75,24 @@ absl::Status ShortOfMemoryError() {
                          std::chrono::seconds(1));
 }
 
+absl::Status AdmitTask(const ServiceParts& parts,
+                       const grpc::CallbackServerContext& context,
+                       bool takes_memory, Work* work, CallRecord* record) {
+  if (takes_memory && parts.memory->Tight()) {
+    record->refusal = Refusal::kMemory;
+    return ShortOfMemoryError();
+  }
+  const Admission::TimeLeft left = TimeLeft(context);
+  record->estimated_seconds =
+      parts.admission->prices().Price(record->method, 0);
+  work->client = record->client;
+  work->call = work->ticket;
+  work->seconds = Admission::Credible(record->estimated_seconds, left);
+  const absl::Status status = parts.admission->Admit(*work, left).status();
+  if (!status.ok()) record->refusal = Refusal::kDeadline;
+  return status;
+}
+
 void AddPushback(const absl::Status& status,
                  grpc::CallbackServerContext* context) {
   if (const auto delay = RetryDelayOf(status)) {

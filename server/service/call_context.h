@@ -48,6 +48,14 @@ Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context);
 // The refusal of a call while memory is tight.
 absl::Status ShortOfMemoryError();
 
+// OK when a call of one task may wait for a worker as `work`, whose place and
+// class are set: memory is not tight, should the call `take_memory`, and it is
+// expected to end in time at the average price of its method. Fills in the rest
+// of `work`, and the refusal.
+absl::Status AdmitTask(const ServiceParts& parts,
+                       const grpc::CallbackServerContext& context,
+                       bool takes_memory, Work* work, CallRecord* record);
+
 // Tells the client's library when to come back, if the status says so.
 void AddPushback(const absl::Status& status,
                  grpc::CallbackServerContext* context);

@@ -36,22 +36,12 @@ grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* PrepareCall::Start(
 
 absl::Status PrepareCall::Admit(Work* share) {
   if (!record_.status.ok()) return record_.status;
-  absl::Status status;
-  if (parts_.memory->Tight()) {
-    record_.refusal = Refusal::kMemory;
-    status = ShortOfMemoryError();
-  } else {
-    // Minutes, perhaps.
-    record_.call_class = CallClass::kBatch;
-    share->work_class = WorkClass::kBatch;
-    share->client = record_.client;
-    share->ticket = share->call = ticket_;
-    share->seconds =
-        Admission::Credible(parts_.admission->prices().Price(record_.method, 0),
-                            TimeLeft(*context_));
-    status = parts_.admission->Admit(*share, TimeLeft(*context_)).status();
-    if (!status.ok()) record_.refusal = Refusal::kDeadline;
-  }
+  // Minutes, perhaps.
+  record_.call_class = CallClass::kBatch;
+  share->work_class = WorkClass::kBatch;
+  share->ticket = ticket_;
+  const absl::Status status =
+      AdmitTask(parts_, *context_, true, share, &record_);
   AddPushback(status, context_);
   return status;
 }

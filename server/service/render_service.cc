@@ -24,10 +24,11 @@ grpc::ServerUnaryReactor* RenderServiceImpl::EstimateRender(
     grpc::CallbackServerContext* context,
     const v1::EstimateRenderRequest* request,
     v1::EstimateRenderResponse* response) {
-  return UnaryCall::Start(parts_, "EstimateRender", context,
-                          Answer(response, [this, request](std::stop_token) {
-                            return parts_.actor->renders().Estimate(*request);
-                          }));
+  return UnaryCall::Start(
+      parts_, "EstimateRender", context,
+      Answer(response, [this, request](std::stop_token stop) {
+        return parts_.actor->renders().Estimate(*request, std::move(stop));
+      }));
 }
 
 }  // namespace terrane::server

@@ -1,5 +1,7 @@
 #include "server/service/terrain_service.h"
 
+#include <utility>
+
 #include "server/service/prepare_call.h"
 #include "server/service/terrain_source.h"
 #include "server/service/tile_stream.h"
@@ -43,10 +45,11 @@ grpc::ServerUnaryReactor* TerrainServiceImpl::EstimateTiles(
     grpc::CallbackServerContext* context,
     const v1::EstimateTilesRequest* request,
     v1::EstimateTilesResponse* response) {
-  return UnaryCall::Start(parts_, "EstimateTiles", context,
-                          Answer(response, [this, request](std::stop_token) {
-                            return parts_.actor->EstimateTiles(*request);
-                          }));
+  return UnaryCall::Start(
+      parts_, "EstimateTiles", context,
+      Answer(response, [this, request](std::stop_token stop) {
+        return parts_.actor->EstimateTiles(*request, std::move(stop));
+      }));
 }
 
 grpc::ServerUnaryReactor* TerrainServiceImpl::GetPreset(

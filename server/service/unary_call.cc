@@ -15,31 +15,19 @@ grpc::ServerUnaryReactor* UnaryCall::Start(const ServiceParts& parts,
     call->End(record.status);
     return call.get();
   }
+  // What only looks something up takes no memory.
+  const bool generates = ScopeOf(method) == kGenerateScope;
   Work share;
-  if (const absl::Status status = call->Admit(&share); !status.ok()) {
-    call->Refuse(status);
+  share.ticket = call->ticket_;
+  const absl::Status admitted =
+      AdmitTask(parts, *context, generates, &share, &record);
+  if (!admitted.ok()) {
+    call->Refuse(admitted);
     return call.get();
   }
   parts.workers->Submit(std::move(share),
                         [call](core::TileScratch*) { call->Run(); });
   return call.get();
-}
-
-absl::Status UnaryCall::Admit(Work* share) {
-  // What only looks something up takes no memory.
-  if (ScopeOf(record_.method) == kGenerateScope && parts_.memory->Tight()) {
-    record_.refusal = Refusal::kMemory;
-    return ShortOfMemoryError();
-  }
-  record_.estimated_seconds =
-      parts_.admission->prices().Price(record_.method, 0);
-  share->client = record_.client;
-  share->ticket = share->call = ticket_;
-  share->seconds = parts_.admission->Credible(record_.estimated_seconds,
-                                              TimeLeft(*context_));
-  const auto admitted = parts_.admission->Admit(*share, TimeLeft(*context_));
-  if (!admitted.ok()) record_.refusal = Refusal::kDeadline;
-  return admitted.status();
 }
 
 void UnaryCall::Refuse(const absl::Status& refusal) {

@@ -48,8 +48,6 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
         ticket_(parts.workers->NextTicket()),
         record_(BeginCall(parts, method, context)) {}
 
-  // OK when the call may wait for a worker, as `share`.
-  absl::Status Admit(Work* share);
   void Refuse(const absl::Status& refusal);
   void Run();
   void End(absl::Status status);

@@ -60,7 +60,7 @@ bool TerrainKeepsContract(const std::string& bytes) {
   constexpr double kCheapSeconds = 0.05;
   v1::EstimateTilesRequest request;
   if (!ParseRequest(bytes, request.mutable_request())) return true;
-  const auto estimate = TheActor().EstimateTiles(request);
+  const auto estimate = TheActor().EstimateTiles(request, {});
   if (!estimate.ok()) return IsDocumented(estimate.status());
   if (estimate->tiles() < 0 || estimate->samples() < 0 ||
       estimate->samples() > (std::int64_t{1} << 36) ||
@@ -146,7 +146,7 @@ bool RenderKeepsContract(const std::string& bytes) {
   constexpr std::int64_t kFewPaths = 20'000;
   v1::EstimateRenderRequest request;
   if (!ParseRequest(bytes, request.mutable_request())) return true;
-  const auto estimate = TheActor().renders().Estimate(request);
+  const auto estimate = TheActor().renders().Estimate(request, {});
   if (!estimate.ok()) return IsDocumented(estimate.status());
   if (estimate->bands() < 0 || estimate->data_bytes() < 0 ||
       estimate->triangles_most() < 1 || estimate->paths() < 1 ||

@@ -358,6 +358,13 @@ class ClientLimitTest(EdgeTest):
             time.sleep(wait)
             self.assertEqual(call(channel, INFO, metadata=self.ONE)[0], StatusCode.OK)
 
+    def test_limits_that_make_no_sense_stop_the_start(self):
+        for flags, text in [(("--client-rate", "nan"), "--client-rate: Value nan not in"),
+                            (("--grace-seconds", "inf"), "--grace-seconds: Value inf not in"),
+                            (("--memory-limit-mib", 100, "--raster-store-mib", 60, "--prepared-mib", 60),
+                             "must be at most 100 together, the memory limit in MiB, got 120")]:
+            self.assertIn(text, self.refused_start(*flags, code=2))
+
     def test_refusals_cost_a_client_nothing(self):
         with served("--trust-forwarded-for", "--client-rate", 0.01) as server, server.channel() as channel:
             self.assertEqual(call(channel, INFO, metadata=self.ONE)[0], StatusCode.OK)

@@ -228,7 +228,7 @@ TEST_F(ActorTest, EstimateIsWhatTheStreamSends) {
   *request.mutable_request() = FromJson<v1::StreamTilesRequest>(
       R"({"terrain": {"preset": "demo/hills"}, "level": 5, "tileSize": 32,
           "firstTile": 5, "window": {"width": 100, "height": 70}})");
-  const auto estimate = actor_->EstimateTiles(request);
+  const auto estimate = actor_->EstimateTiles(request, {});
   ASSERT_TRUE(estimate.ok()) << estimate.status();
   const auto job = *actor_->OpenTiles(request.request(), {});
   std::int64_t bytes = 0;
@@ -364,7 +364,7 @@ TEST_F(ActorTest, PreparationThatTakesTooMuchIsRefusedBeforeWork) {
   // The price is answered all the same.
   v1::EstimateTilesRequest estimate;
   *estimate.mutable_request()->mutable_terrain() = request.terrain();
-  const auto price = actor->EstimateTiles(estimate);
+  const auto price = actor->EstimateTiles(estimate, {});
   ASSERT_TRUE(price.ok()) << price.status();
   EXPECT_GT(price->prepare_bytes(), 100);
   EXPECT_GT(price->prepare_seconds(), 0);
@@ -390,6 +390,15 @@ TEST_F(ActorTest, PreparationEndsWhenItsCallerDoes) {
   *tiles.mutable_terrain() = request.terrain();
   EXPECT_TRUE(
       absl::IsCancelled(actor_->OpenTiles(tiles, stop.get_token()).status()));
+  v1::EstimateTilesRequest estimate;
+  *estimate.mutable_request() = tiles;
+  EXPECT_TRUE(absl::IsCancelled(
+      actor_->EstimateTiles(estimate, stop.get_token()).status()));
+  v1::EstimateRenderRequest render;
+  *render.mutable_request()->mutable_terrain()->mutable_terrain() =
+      request.terrain();
+  EXPECT_TRUE(absl::IsCancelled(
+      actor_->renders().Estimate(render, stop.get_token()).status()));
 }
 
 TEST_F(ActorTest, InfoNamesLimitsAndPresets) {

@@ -125,7 +125,7 @@ class FakeActor : public Actor {
     return v1::GetHeightsResponse();
   }
   absl::StatusOr<v1::EstimateTilesResponse> EstimateTiles(
-      const v1::EstimateTilesRequest&) override {
+      const v1::EstimateTilesRequest&, std::stop_token) override {
     return v1::EstimateTilesResponse();
   }
   absl::StatusOr<v1::GetPresetResponse> GetPreset(

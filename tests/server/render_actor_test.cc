@@ -170,7 +170,7 @@ TEST_F(RenderActorTest, AnEstimateIsWhatComes) {
   *asked.mutable_request() = Asked(
       kSurface, R"("width": 1000, "height": 100, "passes": 3, "bounces": 0,
                    "firstBand": 1)");
-  const auto estimate = actor_->renders().Estimate(asked);
+  const auto estimate = actor_->renders().Estimate(asked, {});
   ASSERT_TRUE(estimate.ok()) << estimate.status();
   const auto messages = Run(asked.request());
   std::int64_t bytes = 0;
@@ -231,7 +231,7 @@ TEST_F(RenderActorTest, AnEstimateHasTheViolationsToo) {
                      "tubes": {"sides": 2147483647}})",
                   "request.tree.tubes.sides"}}) {
     *asked.mutable_request() = Asked(subject, R"("seed": 1)");
-    const auto estimate = actor_->renders().Estimate(asked);
+    const auto estimate = actor_->renders().Estimate(asked, {});
     const auto violations = core::ViolationsOf(estimate.status());
     ASSERT_EQ(violations.size(), 1u) << estimate.status();
     EXPECT_EQ(violations.front().field, field);
@@ -364,7 +364,7 @@ TEST_F(RenderActorTest, AFlowerIsDrawnWithItsBedAndNamesItsFields) {
   v1::EstimateRenderRequest ask;
   *ask.mutable_request() =
       Asked(R"("flower": {"flower": {"preset": "flower/rose"}})", size);
-  const auto estimate = actor_->renders().Estimate(ask);
+  const auto estimate = actor_->renders().Estimate(ask, {});
   ASSERT_TRUE(estimate.ok()) << estimate.status();
   EXPECT_GT(estimate->triangles_most(), 1000);
 }

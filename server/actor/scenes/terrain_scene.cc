@@ -257,7 +257,7 @@ EstimatedScene EstimateTerrainScene(const v1::TerrainSubject& subject,
   if (!window->has_value()) return core::SceneSize();
   v1::EstimateTilesRequest asked;
   *asked.mutable_request() = StreamOf(subject);
-  const auto estimate = actor->EstimateTiles(asked);
+  const auto estimate = actor->EstimateTiles(asked, request.stop);
   if (!estimate.ok()) {
     const absl::Status moved =
         MoveViolations(estimate.status(), "request.",
