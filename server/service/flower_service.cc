@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "server/service/run_source.h"
-#include "server/service/tile_stream.h"
+#include "server/service/stream_call.h"
 #include "server/service/unary_call.h"
 
 namespace terrane::server {
@@ -11,7 +11,7 @@ namespace terrane::server {
 grpc::ServerWriteReactor<grpc::ByteBuffer>* FlowerServiceImpl::StreamFlower(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
   using Source = RunSource<v1::StreamFlowerRequest, v1::StreamFlowerResponse>;
-  return TileStream::Start(
+  return StreamCall::Start(
       parts_, "StreamFlower", context,
       std::make_unique<Source>(
           *request, [this](const auto& asked, std::stop_token stop) {

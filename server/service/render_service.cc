@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "server/service/run_source.h"
-#include "server/service/tile_stream.h"
+#include "server/service/stream_call.h"
 #include "server/service/unary_call.h"
 
 namespace terrane::server {
@@ -12,7 +12,7 @@ namespace terrane::server {
 grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderServiceImpl::StreamRender(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
   using Source = RunSource<v1::StreamRenderRequest, v1::StreamRenderResponse>;
-  return TileStream::Start(
+  return StreamCall::Start(
       parts_, "StreamRender", context,
       std::make_unique<Source>(
           *request, [this](const auto& asked, std::stop_token stop) {

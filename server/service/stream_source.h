@@ -1,6 +1,6 @@
 // StreamSource: what a server stream sends, one message at a time.
 //
-// TileStream (server/service/tile_stream.h) decides when; a source makes the
+// StreamCall (server/service/stream_call.h) decides when; a source makes the
 // bytes. Belongs to one stream and is used by one worker at a time. Errors of
 // both methods end the stream.
 #ifndef TERRANE_SERVER_SERVICE_STREAM_SOURCE_H_

@@ -1,14 +1,14 @@
 #include "server/service/surface_service.h"
 
+#include "server/service/stream_call.h"
 #include "server/service/surface_source.h"
-#include "server/service/tile_stream.h"
 #include "server/service/unary_call.h"
 
 namespace terrane::server {
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* SurfaceServiceImpl::StreamSurface(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
-  return TileStream::Start(parts_, "StreamSurface", context,
+  return StreamCall::Start(parts_, "StreamSurface", context,
                            MakeSurfaceSource(parts_, *request));
 }
 

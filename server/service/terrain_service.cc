@@ -3,15 +3,15 @@
 #include <utility>
 
 #include "server/service/prepare_call.h"
+#include "server/service/stream_call.h"
 #include "server/service/terrain_source.h"
-#include "server/service/tile_stream.h"
 #include "server/service/unary_call.h"
 
 namespace terrane::server {
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* TerrainServiceImpl::StreamTiles(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
-  return TileStream::Start(parts_, "StreamTiles", context,
+  return StreamCall::Start(parts_, "StreamTiles", context,
                            MakeTerrainSource(parts_, *request));
 }
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "server/service/run_source.h"
-#include "server/service/tile_stream.h"
+#include "server/service/stream_call.h"
 #include "server/service/unary_call.h"
 
 namespace terrane::server {
@@ -11,7 +11,7 @@ namespace terrane::server {
 grpc::ServerWriteReactor<grpc::ByteBuffer>* TreeServiceImpl::StreamTree(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
   using Source = RunSource<v1::StreamTreeRequest, v1::StreamTreeResponse>;
-  return TileStream::Start(
+  return StreamCall::Start(
       parts_, "StreamTree", context,
       std::make_unique<Source>(*request, [this](const auto& asked, auto) {
         return parts_.actor->trees().OpenRows(asked);
@@ -22,7 +22,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* TreeServiceImpl::StreamTreeLeaves(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
   using Source =
       RunSource<v1::StreamTreeLeavesRequest, v1::StreamTreeLeavesResponse>;
-  return TileStream::Start(
+  return StreamCall::Start(
       parts_, "StreamTreeLeaves", context,
       std::make_unique<Source>(*request, [this](const auto& asked, auto) {
         return parts_.actor->trees().OpenLeaves(asked);
@@ -33,7 +33,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* TreeServiceImpl::StreamTreeMesh(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
   using Source =
       RunSource<v1::StreamTreeMeshRequest, v1::StreamTreeMeshResponse>;
-  return TileStream::Start(
+  return StreamCall::Start(
       parts_, "StreamTreeMesh", context,
       std::make_unique<Source>(*request, [this](const auto& asked, auto) {
         return parts_.actor->trees().OpenMesh(asked);
@@ -43,7 +43,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* TreeServiceImpl::StreamTreeMesh(
 grpc::ServerWriteReactor<grpc::ByteBuffer>* TreeServiceImpl::StreamForest(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
   using Source = RunSource<v1::StreamForestRequest, v1::StreamForestResponse>;
-  return TileStream::Start(
+  return StreamCall::Start(
       parts_, "StreamForest", context,
       std::make_unique<Source>(*request, [this](const auto& asked, auto) {
         return parts_.actor->trees().OpenForest(asked);

@@ -1,9 +1,9 @@
-// TileStream: one server-streaming rpc, whose messages a StreamSource makes.
+// StreamCall: one server-streaming rpc, whose messages a StreamSource makes.
 //
 // At most two messages are in hand: one being written, and one ahead of it,
-// made or being made. A slow reader therefore costs two tiles, whatever it
+// made or being made. A slow reader therefore costs two messages, whatever it
 // asked for, and one outstanding write is all the back-pressure there is. Each
-// tile is one task of the worker pool, so streams take turns.
+// message is one task of the worker pool, so streams take turns.
 //
 // What happens next is decided under the mutex and done outside it (gRPC may
 // run a reaction inside a call into it); whoever decided to write or to finish
@@ -12,8 +12,8 @@
 // OnCancel, which stops the generation within a millisecond.
 //
 // Lifetime: owns itself until OnDone; a queued task shares it.
-#ifndef TERRANE_SERVER_SERVICE_TILE_STREAM_H_
-#define TERRANE_SERVER_SERVICE_TILE_STREAM_H_
+#ifndef TERRANE_SERVER_SERVICE_STREAM_CALL_H_
+#define TERRANE_SERVER_SERVICE_STREAM_CALL_H_
 
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
@@ -30,7 +30,7 @@
 
 namespace terrane::server {
 
-class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
+class StreamCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                          public Stallable {
  public:
   static grpc::ServerWriteReactor<grpc::ByteBuffer>* Start(
@@ -46,7 +46,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
  private:
   using Clock = CallRecord::Clock;
 
-  TileStream(const ServiceParts& parts, const char* method,
+  StreamCall(const ServiceParts& parts, const char* method,
              grpc::CallbackServerContext* context,
              std::unique_ptr<StreamSource> source);
 
@@ -56,7 +56,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   // Queues the next task: opening the source first, then a message each. The
   // stream may end at any time from here on, so the task brings its own share
   // of it.
-  static void Submit(std::shared_ptr<TileStream> stream);
+  static void Submit(std::shared_ptr<StreamCall> stream);
   // The stream before its request is read: what such streams usually are.
   Work Arriving() const;
   // What the next task is a part of. Under the mutex, or before the first one.
@@ -77,7 +77,7 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
   std::stop_source stop_;
-  std::shared_ptr<TileStream> self_;
+  std::shared_ptr<StreamCall> self_;
 
   // Its place among its client's calls.
   const std::uint64_t call_ticket_;
@@ -112,4 +112,4 @@ class TileStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
 
 }  // namespace terrane::server
 
-#endif  // TERRANE_SERVER_SERVICE_TILE_STREAM_H_
+#endif  // TERRANE_SERVER_SERVICE_STREAM_CALL_H_

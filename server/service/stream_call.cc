@@ -1,4 +1,4 @@
-#include "server/service/tile_stream.h"
+#include "server/service/stream_call.h"
 
 #include <algorithm>
 #include <utility>
@@ -21,18 +21,18 @@ double Seconds(std::chrono::nanoseconds duration) {
 
 }  // namespace
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* TileStream::Start(
+grpc::ServerWriteReactor<grpc::ByteBuffer>* StreamCall::Start(
     const ServiceParts& parts, const char* method,
     grpc::CallbackServerContext* context,
     std::unique_ptr<StreamSource> source) {
-  std::shared_ptr<TileStream> stream(
-      new TileStream(parts, method, context, std::move(source)));
+  std::shared_ptr<StreamCall> stream(
+      new StreamCall(parts, method, context, std::move(source)));
   stream->self_ = stream;
   stream->EnterGate();
   return stream.get();
 }
 
-TileStream::TileStream(const ServiceParts& parts, const char* method,
+StreamCall::StreamCall(const ServiceParts& parts, const char* method,
                        grpc::CallbackServerContext* context,
                        std::unique_ptr<StreamSource> source)
     : parts_(parts),
@@ -41,7 +41,7 @@ TileStream::TileStream(const ServiceParts& parts, const char* method,
       source_(std::move(source)),
       record_(BeginCall(parts, method, context)) {}
 
-void TileStream::EnterGate() {
+void StreamCall::EnterGate() {
   if (!record_.status.ok()) {
     std::unique_lock lock(mutex_);
     EndWith(record_.status);
@@ -57,7 +57,7 @@ void TileStream::EnterGate() {
   const absl::Status full =
       RetryLaterError("too many streams are waiting; try again", kRetryDelay);
   // Once it has its ticket the stream can end at any time.
-  const std::shared_ptr<TileStream> keep = self_;
+  const std::shared_ptr<StreamCall> keep = self_;
   {
     // Locked, so that the task cannot end the stream before the ticket is kept.
     std::lock_guard lock(mutex_);
@@ -70,7 +70,7 @@ void TileStream::EnterGate() {
   parts_.stalls->Add(keep);
 }
 
-void TileStream::Refuse(Refusal reason, const absl::Status& refusal) {
+void StreamCall::Refuse(Refusal reason, const absl::Status& refusal) {
   std::unique_lock lock(mutex_);
   queued_since_.reset();
   if (!end_.has_value()) {
@@ -81,7 +81,7 @@ void TileStream::Refuse(Refusal reason, const absl::Status& refusal) {
   Advance(std::move(lock));
 }
 
-Work TileStream::Arriving() const {
+Work StreamCall::Arriving() const {
   Work work;
   work.client = record_.client;
   work.ticket = work.call = call_ticket_;
@@ -90,7 +90,7 @@ Work TileStream::Arriving() const {
   return work;
 }
 
-Work TileStream::NextWork() const {
+Work StreamCall::NextWork() const {
   Work work;
   work.client = record_.client;
   work.ticket = call_ticket_;
@@ -110,7 +110,7 @@ Work TileStream::NextWork() const {
   return work;
 }
 
-void TileStream::Submit(std::shared_ptr<TileStream> stream) {
+void StreamCall::Submit(std::shared_ptr<StreamCall> stream) {
   WorkerPool* const workers = stream->parts_.workers;
   Work work = stream->NextWork();
   workers->Submit(std::move(work),
@@ -119,11 +119,11 @@ void TileStream::Submit(std::shared_ptr<TileStream> stream) {
                   });
 }
 
-double TileStream::SpentSeconds() const {
+double StreamCall::SpentSeconds() const {
   return Seconds(record_.generated - opening_time_);
 }
 
-absl::Status TileStream::Price() {
+absl::Status StreamCall::Price() {
   raw_seconds_ = source_->EstimatedSeconds();
   record_.estimated_seconds =
       parts_.admission->prices().Price(record_.method, raw_seconds_);
@@ -140,7 +140,7 @@ absl::Status TileStream::Price() {
   return admitted.status();
 }
 
-void TileStream::RunTask(core::TileScratch* scratch) {
+void StreamCall::RunTask(core::TileScratch* scratch) {
   const Clock::time_point start = Clock::now();
   {
     std::lock_guard lock(mutex_);
@@ -178,7 +178,7 @@ void TileStream::RunTask(core::TileScratch* scratch) {
   Advance(std::move(lock));
 }
 
-void TileStream::Learn() {
+void StreamCall::Learn() {
   if (end_->ok()) {
     parts_.admission->prices().Learn(record_.method, raw_seconds_,
                                      SpentSeconds());
@@ -191,16 +191,16 @@ void TileStream::Learn() {
   }
 }
 
-void TileStream::EndWith(const absl::Status& status) {
+void StreamCall::EndWith(const absl::Status& status) {
   if (!end_.has_value()) end_ = status;
 }
 
-bool TileStream::MayGenerate() const {
+bool StreamCall::MayGenerate() const {
   return !queued_since_.has_value() && !running_ && !ahead_.has_value() &&
          !all_made_ && !end_.has_value();
 }
 
-void TileStream::Advance(std::unique_lock<std::mutex> lock) {
+void StreamCall::Advance(std::unique_lock<std::mutex> lock) {
   if (finished_) return;
   const bool write = !writing_ && ahead_.has_value() && !end_.has_value();
   if (write) {
@@ -220,7 +220,7 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
     Learn();
   }
   // Once unlocked the stream can end at any time, and then lets go of itself.
-  const std::shared_ptr<TileStream> keep = self_;
+  const std::shared_ptr<StreamCall> keep = self_;
   lock.unlock();
   if (generate) Submit(keep);
   if (write) StartWrite(&outgoing_);
@@ -232,7 +232,7 @@ void TileStream::Advance(std::unique_lock<std::mutex> lock) {
   }
 }
 
-void TileStream::OnWriteDone(bool ok) {
+void StreamCall::OnWriteDone(bool ok) {
   std::unique_lock lock(mutex_);
   writing_ = false;
   sending_ += Clock::now() - write_began_;
@@ -240,7 +240,7 @@ void TileStream::OnWriteDone(bool ok) {
   Advance(std::move(lock));
 }
 
-void TileStream::OnCancel() {
+void StreamCall::OnCancel() {
   stop_.request_stop();
   std::unique_lock lock(mutex_);
   if (queued_since_.has_value() && !end_.has_value()) {
@@ -250,7 +250,7 @@ void TileStream::OnCancel() {
   Advance(std::move(lock));
 }
 
-void TileStream::EndIfStalledSince(Clock::time_point moment) {
+void StreamCall::EndIfStalledSince(Clock::time_point moment) {
   {
     std::lock_guard lock(mutex_);
     if (!writing_ || write_began_ > moment || end_.has_value()) return;
@@ -263,7 +263,7 @@ void TileStream::EndIfStalledSince(Clock::time_point moment) {
   Advance(std::move(lock));
 }
 
-void TileStream::OnDone() {
+void StreamCall::OnDone() {
   parts_.workers->Leave(call_ticket_);
   if (ticket_.has_value()) parts_.gate->Leave(*ticket_);
   parts_.calls->Close(&record_);

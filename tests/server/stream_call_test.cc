@@ -1,6 +1,6 @@
 // Streams over loopback with tiles that cost nothing: order, back-pressure,
 // cancellation, refusal and drain.
-#include "server/service/tile_stream.h"
+#include "server/service/stream_call.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ std::int64_t ReadAll(TileReader* reader, std::int64_t first,
   return next - first;
 }
 
-TEST(TileStreamTest, TilesComeInOrderAndWhole) {
+TEST(StreamCallTest, TilesComeInOrderAndWhole) {
   FakeActor actor;
   Served served(&actor);
   for (const std::size_t bytes : {0UL, 1UL, 100UL, 300'000UL}) {
@@ -55,7 +55,7 @@ TEST(TileStreamTest, TilesComeInOrderAndWhole) {
   }
 }
 
-TEST(TileStreamTest, ResumesAtTheFirstTileAskedFor) {
+TEST(StreamCallTest, ResumesAtTheFirstTileAskedFor) {
   FakeActor actor;
   Served served(&actor);
   for (const std::int64_t first : {1, 49, 50}) {
@@ -66,7 +66,7 @@ TEST(TileStreamTest, ResumesAtTheFirstTileAskedFor) {
   }
 }
 
-TEST(TileStreamTest, ManyStreamsAtOnceAllEnd) {
+TEST(StreamCallTest, ManyStreamsAtOnceAllEnd) {
   FakeActor actor;
   ServerOptions options;
   options.workers = 2;
@@ -86,7 +86,7 @@ TEST(TileStreamTest, ManyStreamsAtOnceAllEnd) {
 
 // gRPC and the kernel take in some megabytes that nobody reads; after that the
 // stream holds still, at one tile being written and one ahead.
-TEST(TileStreamTest, SlowReaderHoldsTheStream) {
+TEST(StreamCallTest, SlowReaderHoldsTheStream) {
   FakeActor actor;
   actor.tiles().tile_bytes = 8 << 20;
   Served served(&actor);
@@ -104,7 +104,7 @@ TEST(TileStreamTest, SlowReaderHoldsTheStream) {
   EXPECT_TRUE(reader->Finish().ok());
 }
 
-TEST(TileStreamTest, CancelStopsTheGeneration) {
+TEST(StreamCallTest, CancelStopsTheGeneration) {
   FakeActor actor;
   Served served(&actor);
   actor.tiles().hold = true;
@@ -120,7 +120,7 @@ TEST(TileStreamTest, CancelStopsTheGeneration) {
   EXPECT_EQ(actor.tiles().started, 1);
 }
 
-TEST(TileStreamTest, CancelOfAnUnreadStreamEndsIt) {
+TEST(StreamCallTest, CancelOfAnUnreadStreamEndsIt) {
   FakeActor actor;
   actor.tiles().tile_bytes = 8 << 20;
   Served served(&actor);
@@ -133,7 +133,7 @@ TEST(TileStreamTest, CancelOfAnUnreadStreamEndsIt) {
   EXPECT_LT(actor.tiles().started, 10);
 }
 
-TEST(TileStreamTest, DeadlineStopsTheGeneration) {
+TEST(StreamCallTest, DeadlineStopsTheGeneration) {
   FakeActor actor;
   Served served(&actor);
   actor.tiles().hold = true;
@@ -150,7 +150,7 @@ TEST(TileStreamTest, DeadlineStopsTheGeneration) {
               HasSubstr("\"code\":\"DEADLINE_EXCEEDED\""));
 }
 
-TEST(TileStreamTest, CancelStormLeavesAServerThatServes) {
+TEST(StreamCallTest, CancelStormLeavesAServerThatServes) {
   FakeActor actor;
   ServerOptions options;
   options.workers = 2;
@@ -169,7 +169,7 @@ TEST(TileStreamTest, CancelStormLeavesAServerThatServes) {
   EXPECT_TRUE(reader->Finish().ok());
 }
 
-TEST(TileStreamTest, BeyondTheLineStreamsAreRefusedWithADelay) {
+TEST(StreamCallTest, BeyondTheLineStreamsAreRefusedWithADelay) {
   FakeActor actor;
   actor.tiles().hold = true;
   ServerOptions options;
@@ -207,7 +207,7 @@ TEST(TileStreamTest, BeyondTheLineStreamsAreRefusedWithADelay) {
   EXPECT_EQ(served_streams, 5);
 }
 
-TEST(TileStreamTest, WhatCannotEndInTimeIsRefusedBeforeATileIsMade) {
+TEST(StreamCallTest, WhatCannotEndInTimeIsRefusedBeforeATileIsMade) {
   FakeActor actor;
   actor.tiles().seconds = 100;
   Served served(&actor);
@@ -231,7 +231,7 @@ TEST(TileStreamTest, WhatCannotEndInTimeIsRefusedBeforeATileIsMade) {
   EXPECT_THAT(served.StopAndReadLog(), HasSubstr("\"reason\":\"deadline\""));
 }
 
-TEST(TileStreamTest, AReaderThatTakesNothingIsCut) {
+TEST(StreamCallTest, AReaderThatTakesNothingIsCut) {
   FakeActor actor;
   actor.tiles().tile_bytes = 8 << 20;
   ServerOptions options = WithHttp();
@@ -274,7 +274,7 @@ TEST(UploadTest, OfAClientThatSendsNothingItsRoomIsFreeAgain) {
 }
 
 // A machine that stands still may cut one stream; the next is left alone.
-TEST(TileStreamTest, AReaderThatIsOnlySlowIsNot) {
+TEST(StreamCallTest, AReaderThatIsOnlySlowIsNot) {
   FakeActor actor;
   actor.tiles().tile_bytes = 4 << 20;
   ServerOptions options;
@@ -295,7 +295,7 @@ TEST(TileStreamTest, AReaderThatIsOnlySlowIsNot) {
   EXPECT_TRUE(status.ok()) << status.error_message();
 }
 
-TEST(TileStreamTest, DrainLetsARunningStreamEnd) {
+TEST(StreamCallTest, DrainLetsARunningStreamEnd) {
   FakeActor actor;
   actor.tiles().hold = true;
   Served served(&actor);
@@ -315,7 +315,7 @@ TEST(TileStreamTest, DrainLetsARunningStreamEnd) {
             grpc::StatusCode::UNAVAILABLE);
 }
 
-TEST(TileStreamTest, DrainCancelsWhatOutlivesIt) {
+TEST(StreamCallTest, DrainCancelsWhatOutlivesIt) {
   FakeActor actor;
   actor.tiles().hold = true;
   Served served(&actor);
