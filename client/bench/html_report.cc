@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 
 #include "client/bench/svg_plot.h"
 #include "client/bench/sweep.h"
@@ -330,6 +331,18 @@ std::string SweepHtml(const BenchReport& report) {
   return html + "</div>\n" + SweepPlots(report);
 }
 
+// All that shapes the load, in the order of the names.
+std::string SettingsText(const BenchReport& report) {
+  const std::map<std::string, std::string> settings(report.settings().begin(),
+                                                    report.settings().end());
+  std::string text;
+  for (const auto& [name, value] : settings) {
+    if (!text.empty()) text += " · ";
+    text += name + ' ' + value;
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string HtmlReport(const BenchReport& report) {
@@ -342,7 +355,7 @@ std::string HtmlReport(const BenchReport& report) {
       EscapeHtml(report.started()), kStyle, EscapeHtml(report.server()),
       EscapeHtml(report.version()),
       report.interrupted() ? " · stopped before its end" : "",
-      EscapeHtml(report.options()));
+      EscapeHtml(SettingsText(report)));
   if (report.has_sweep()) html += SweepHtml(report);
   for (const BenchRun& run : report.runs()) html += RunHtml(run);
   return html + "</main></body></html>\n";

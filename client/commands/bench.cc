@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "client/bench/bench_run.h"
@@ -66,8 +65,7 @@ void WarnOfQueue(const BenchOptions& options) {
       calls, kServerCalls);
 }
 
-int Run(const BenchCommand& command, const std::string& options_text,
-        std::stop_token stop) {
+int Run(const BenchCommand& command, std::stop_token stop) {
   // Before the load: a report that is missing, or of another load, must not
   // cost a run.
   const BenchOptions options = OptionsOf(command);
@@ -95,7 +93,6 @@ int Run(const BenchCommand& command, const std::string& options_text,
   report->set_version(command.version);
   report->set_server(command.connection.server);
   report->set_started(started);
-  report->set_options(options_text);
   if (report->has_sweep()) text << SweepMarkdown(*report);
   const absl::Status written = WriteReports(command, *report);
   if (!written.ok()) return ReportStatus(written);
@@ -108,21 +105,6 @@ int Run(const BenchCommand& command, const std::string& options_text,
   return comparison.is_worse ? kExitWorse : kExitOk;
 }
 
-// The options that were given, on one line.
-std::string OptionsText(const CLI::App& subcommand) {
-  std::string text;
-  for (const CLI::Option* option : subcommand.get_options()) {
-    if (option->count() == 0 || option->get_name() == "--json" ||
-        option->get_name() == "--html") {
-      continue;
-    }
-    if (!text.empty()) text += ' ';
-    text += option->get_name();
-    for (const std::string& result : option->results()) text += ' ' + result;
-  }
-  return text;
-}
-
 }  // namespace
 
 void AddBenchCommand(CLI::App* app, Action* action) {
@@ -132,10 +114,8 @@ void AddBenchCommand(CLI::App* app, Action* action) {
   command->version = app->version();
   AddBenchOptions(subcommand, command.get());
   subcommand->footer(kFooter);
-  subcommand->final_callback([command, action, subcommand] {
-    *action = [command, text = OptionsText(*subcommand)](std::stop_token stop) {
-      return Run(*command, text, stop);
-    };
+  subcommand->final_callback([command, action] {
+    *action = [command](std::stop_token stop) { return Run(*command, stop); };
   });
 }
 

@@ -361,6 +361,8 @@ TEST(Plot, WithoutPointsIsStillAPlot) {
 TEST(HtmlReport, StandsAlone) {
   BenchReport report;
   report.set_server("<script>");
+  (*report.mutable_settings())["mix"] = "tiles=4,trees=1";
+  (*report.mutable_settings())["arrivals"] = "even";
   *report.add_runs() = OpenRun(50, 50);
   *report.mutable_sweep() = SummarizeSweep(report);
   const std::string html = HtmlReport(report);
@@ -368,6 +370,7 @@ TEST(HtmlReport, StandsAlone) {
     EXPECT_THAT(html, Not(HasSubstr(part)));
   }
   EXPECT_THAT(html, HasSubstr("&lt;script&gt;"));
+  EXPECT_THAT(html, HasSubstr("arrivals even · mix tiles=4,trees=1"));
 }
 
 TEST(Text, LatencyWithWhatWasLostIsShownWhenAnythingWas) {
