@@ -333,11 +333,14 @@ core::TileRequest PlanProfile(const v1::GetProfileRequest& request,
                            root.Field("sampling"), violations);
   plan.window = {request.first(), 0, request.count(), 1};
   const Path count = root.Field("count");
-  const std::optional<Extent> extent =
-      level_good ? ExtentOf(spec, plan.level, plan.sampling) : std::nullopt;
+  std::optional<std::int64_t> width;  // of the domain, where it is known
+  if (level_good) {
+    const auto extent = ExtentOf(spec, plan.level, plan.sampling);
+    if (extent.has_value()) width = extent->width;
+  }
   if (request.count() == 0) {
-    if (extent.has_value()) {
-      plan.window = {0, 0, extent->width, 1};
+    if (width.has_value()) {
+      plan.window = {0, 0, *width, 1};
     } else if (spec == nullptr || DomainOf(*spec).has_value()) {
       return plan;  // nothing is known of its domain, or of the level
     } else {
@@ -347,8 +350,7 @@ core::TileRequest PlanProfile(const v1::GetProfileRequest& request,
   }
   const bool count_good =
       checks.Integer(count, plan.window.width, 1, limits.max_profile_samples);
-  CheckOnAxis(SampleAxis(extent ? std::optional(extent->width) : std::nullopt),
-              root.Field("first"), plan.window.x, count,
+  CheckOnAxis(SampleAxis(width), root.Field("first"), plan.window.x, count,
               count_good ? plan.window.width : 1, &checks);
   return plan;
 }
