@@ -58,8 +58,9 @@ class TileList {
     auto tile = manifest_.tiles().begin();
     for (std::int64_t i = run.first; i < run.end; ++i) {
       if (stop.stop_requested()) return absl::CancelledError("interrupted");
+      const std::int64_t row = i / columns;
       const double x = job.tile_x() + static_cast<double>(i % columns);
-      const double y = job.tile_y() + static_cast<double>(i / columns);
+      const double y = job.tile_y() + static_cast<double>(row);
       if (tile == manifest_.tiles().end() || tile->x() != x || tile->y() != y) {
         Add(x, y, "is not made");
         continue;
@@ -185,7 +186,7 @@ absl::StatusOr<std::vector<std::string>> VerifyExport(const std::string& out,
     if (!job.has_value()) job = manifest->job();
     const std::string fault = JobFault(manifest->job(), *job, out);
     if (!fault.empty()) {
-      faults.push_back(path + ": " + fault);
+      faults.push_back(fmt::format("{}: {}", path, fault));
       continue;
     }
     const auto tiles =

@@ -1,7 +1,5 @@
 #include "client/local_backend_flowers.h"
 
-#include <utility>
-
 #include "client/flower_verifier.h"
 #include "client/local_backend_run.h"
 
@@ -14,8 +12,8 @@ absl::Status LocalFlowers::StreamFlower(const v1::StreamFlowerRequest& request,
   FlowerVerifier verifier(request);
   return HandOutRun(
       maker_->Open(request, stop), on_header, on_part,
-      [](const auto& message) -> const auto& { return message; },
-      std::move(stop), &verifier);
+      [](const auto& message) -> const auto& { return message; }, stop,
+      &verifier);
 }
 
 absl::StatusOr<v1::EstimateFlowerResponse> LocalFlowers::EstimateFlower(

@@ -338,7 +338,7 @@ std::string SettingsText(const BenchReport& report) {
   std::string text;
   for (const auto& [name, value] : settings) {
     if (!text.empty()) text += " · ";
-    text += name + ' ' + value;
+    text += fmt::format("{} {}", name, value);
   }
   return text;
 }

@@ -34,6 +34,9 @@ namespace terrane::core {
 
 class Flower {
  public:
+  Flower(const Flower&) = delete;
+  Flower& operator=(const Flower&) = delete;
+
   // Validates the spec and makes the prototypes. Errors: INVALID_ARGUMENT with
   // violations (field paths relative to the recipe, such as
   // "petals[0].blade.sketches[1].points"); CANCELLED when `stop` was asked to,
@@ -60,8 +63,6 @@ class Flower {
 
  private:
   Flower(const FlowerSpec& spec, const std::stop_token& stop);
-  Flower(const Flower&) = delete;
-  Flower& operator=(const Flower&) = delete;
 
   const FlowerSpec spec_;
   const FlowerEstimate estimate_;

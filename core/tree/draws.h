@@ -84,7 +84,9 @@ constexpr std::uint32_t NormalCode(std::uint32_t largest, std::uint32_t sum) {
 }
 
 // A probability as a threshold of 16 random bits, and a coin that falls on it.
+// std::lround is no constant expression, and rounds alike from 0 to 1.
 constexpr std::uint32_t Threshold(double probability) {
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings)
   return static_cast<std::uint32_t>(probability * 65536.0 + 0.5);
 }
 constexpr bool Coin(std::uint32_t sixteen_bits, std::uint32_t threshold) {
