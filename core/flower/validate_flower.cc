@@ -27,10 +27,9 @@ constexpr std::int64_t kMostPlants = 1'000'000;
 constexpr double kHalfTurn = 180;
 
 void ValidateTint(const Path& path, const Tint& tint, FieldChecks* checks) {
-  constexpr const char* kNames[] = {"red", "green", "blue"};
-  for (std::size_t i = 0; i < tint.size(); ++i) {
-    checks->Number(path.Field(kNames[i]), static_cast<double>(tint[i]),
-                   kShares);
+  auto share = tint.begin();
+  for (const char* name : {"red", "green", "blue"}) {
+    checks->Number(path.Field(name), static_cast<double>(*share++), kShares);
   }
 }
 
