@@ -133,8 +133,9 @@ class UploadCall final : public grpc::ServerReadReactor<Request>,
     if (context_->IsCancelled()) return End(CancelStatus(*context_));
     absl::StatusOr<Response> response = upload_->Finish();
     record_.generated += Clock::now() - start;
-    if (response.ok()) *response_ = *std::move(response);
-    End(response.status());
+    if (!response.ok()) return End(response.status());
+    *response_ = *std::move(response);
+    End(absl::OkStatus());
   }
 
   void End(absl::Status status) {
