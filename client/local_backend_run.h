@@ -11,11 +11,12 @@
 namespace terrane::client {
 
 // `part_of` is what of a message that is no header is checked and handed on.
+// `stop` is a reference, for what opens the run in the same call may read it.
 template <typename Message, typename Header, typename Part, typename PartOf,
           typename Verifier>
 absl::Status HandOutRun(const server::OpenedRun<Message>& run,
                         const Header& on_header, const Part& on_part,
-                        const PartOf& part_of, std::stop_token stop,
+                        const PartOf& part_of, const std::stop_token& stop,
                         Verifier* verifier) {
   if (!run.ok()) return run.status();
   Message message;

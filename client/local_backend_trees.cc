@@ -1,7 +1,5 @@
 #include "client/local_backend_trees.h"
 
-#include <utility>
-
 #include "client/local_backend_run.h"
 #include "client/tree_verifiers.h"
 
@@ -15,7 +13,7 @@ absl::Status LocalTrees::StreamTree(const v1::StreamTreeRequest& request,
   return HandOutRun(
       maker_->OpenRows(request), on_header, on_rows,
       [](const auto& message) -> const auto& { return message.segments(); },
-      std::move(stop), &verifier);
+      stop, &verifier);
 }
 
 absl::Status LocalTrees::StreamTreeLeaves(
@@ -24,8 +22,8 @@ absl::Status LocalTrees::StreamTreeLeaves(
   TreeLeavesVerifier verifier(request);
   return HandOutRun(
       maker_->OpenLeaves(request), on_header, on_leaves,
-      [](const auto& message) -> const auto& { return message.leaves(); },
-      std::move(stop), &verifier);
+      [](const auto& message) -> const auto& { return message.leaves(); }, stop,
+      &verifier);
 }
 
 absl::Status LocalTrees::StreamTreeMesh(
@@ -34,8 +32,8 @@ absl::Status LocalTrees::StreamTreeMesh(
   TubesVerifier verifier(request);
   return HandOutRun(
       maker_->OpenMesh(request), on_header, on_tubes,
-      [](const auto& message) -> const auto& { return message.block(); },
-      std::move(stop), &verifier);
+      [](const auto& message) -> const auto& { return message.block(); }, stop,
+      &verifier);
 }
 
 absl::Status LocalTrees::StreamForest(const v1::StreamForestRequest& request,
@@ -45,8 +43,8 @@ absl::Status LocalTrees::StreamForest(const v1::StreamForestRequest& request,
   ForestVerifier verifier(request);
   return HandOutRun(
       maker_->OpenForest(request), on_header, on_block,
-      [](const auto& message) -> const auto& { return message.block(); },
-      std::move(stop), &verifier);
+      [](const auto& message) -> const auto& { return message.block(); }, stop,
+      &verifier);
 }
 
 absl::StatusOr<v1::EstimateTreeResponse> LocalTrees::EstimateTree(
