@@ -16,6 +16,7 @@
 #include "client/commands/command.h"
 #include "client/csv.h"
 #include "client/exit_code.h"
+#include "client/output_file.h"
 
 namespace terrane::client {
 namespace {
@@ -43,6 +44,17 @@ std::string NowText() {
                          std::chrono::system_clock::now())));
 }
 
+// OK when every report can be made: tried and taken back.
+absl::Status CheckWritable(const BenchCommand& command) {
+  for (const std::string& path : {command.json, command.html}) {
+    if (path.empty() || path == "-") continue;
+    if (const auto file = OutputFile::Create(path); !file.ok()) {
+      return file.status();
+    }
+  }
+  return absl::OkStatus();
+}
+
 absl::Status WriteReports(const BenchCommand& command,
                           const BenchReport& report) {
   absl::Status status;
@@ -66,8 +78,10 @@ void WarnOfQueue(const BenchOptions& options) {
 }
 
 int Run(const BenchCommand& command, std::stop_token stop) {
-  // Before the load: a report that is missing, or of another load, must not
-  // cost a run.
+  // Before the load: a report that is missing, or of another load, or cannot be
+  // written, must not cost a run.
+  const absl::Status writable = CheckWritable(command);
+  if (!writable.ok()) return ReportStatus(writable);
   const BenchOptions options = OptionsOf(command);
   absl::StatusOr<BenchReport> before = BenchReport();
   if (!command.compare.empty()) {

@@ -198,6 +198,15 @@ class BenchTest(unittest.TestCase):
         self.assertNotIn("script", parser.counts)
         self.assertNotIn("http", content)
 
+    def test_a_report_that_cannot_be_written_costs_no_run(self):
+        page = self.folder / "report.html"
+        for paths in [["--html", self.folder / "none" / "report.html"],
+                      ["--html", page, "--json", self.folder / "none" / "report.json"]]:
+            done = self.bench("--duration", "1s", *paths, expected=1)
+            self.assertEqual(done.stdout, "")
+            self.assertIn("cannot create", done.stderr)
+            self.assertEqual(list(self.folder.iterdir()), [])
+
     def test_comparison_tells_worse_from_equal(self):
         old = self.folder / "old.json"
         load = ["--duration", "3s", "--concurrency", 2, "--tile-size", 64, *NO_HURRY]
