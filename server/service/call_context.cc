@@ -1,5 +1,7 @@
 #include "server/service/call_context.h"
 
+#include <grpc/support/time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -11,6 +13,8 @@
 
 namespace terrane::server {
 namespace {
+
+using Clock = CallRecord::Clock;
 
 constexpr char kRequestIdKey[] = "x-request-id";
 constexpr char kTraceKey[] = "traceparent";
@@ -62,12 +66,24 @@ CallRecord BeginCall(const ServiceParts& parts, const char* method,
   return record;
 }
 
+Clock::time_point DeadlineOf(const grpc::CallbackServerContext& context) {
+  // gRPC's own conversion ends with nanoseconds that do not hold what a client
+  // may send.
+  constexpr std::chrono::seconds kCentury = std::chrono::hours(24 * 36525);
+  const gpr_timespec deadline = context.raw_deadline();
+  const gpr_timespec left =
+      gpr_time_sub(deadline, gpr_now(deadline.clock_type));
+  if (left.tv_sec >= kCentury.count()) return Clock::time_point::max();
+  return Clock::now() +
+         std::max<std::chrono::seconds>(std::chrono::seconds(left.tv_sec),
+                                        -kCentury) +
+         std::chrono::nanoseconds(left.tv_nsec);
+}
+
 Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context) {
-  const auto deadline = context.deadline();
-  if (deadline == std::chrono::system_clock::time_point::max()) {
-    return std::nullopt;
-  }
-  return deadline - std::chrono::system_clock::now();
+  const Clock::time_point deadline = DeadlineOf(context);
+  if (deadline == Clock::time_point::max()) return std::nullopt;
+  return deadline - Clock::now();
 }
 
 absl::Status ShortOfMemoryError() {
@@ -105,7 +121,7 @@ absl::Status CancelStatus(const grpc::CallbackServerContext& context) {
   // A client whose time is up cancels by itself, and that may come a moment
   // before the server's own clock says so.
   constexpr std::chrono::milliseconds kMoment{100};
-  return context.deadline() <= std::chrono::system_clock::now() + kMoment
+  return DeadlineOf(context) <= Clock::now() + kMoment
              ? absl::DeadlineExceededError("the deadline has passed")
              : absl::CancelledError("the client cancelled the call");
 }

@@ -12,9 +12,9 @@
 #include "server/service/buffer_pool.h"
 #include "server/service/call_book.h"
 #include "server/service/call_record.h"
+#include "server/service/call_watch.h"
 #include "server/service/linger.h"
 #include "server/service/memory_watch.h"
-#include "server/service/stall_watch.h"
 #include "server/service/stream_gate.h"
 #include "server/service/worker_pool.h"
 
@@ -26,7 +26,7 @@ struct ServiceParts {
   WorkerPool* workers = nullptr;
   Admission* admission = nullptr;
   StreamGate* gate = nullptr;
-  StallWatch* stalls = nullptr;
+  CallWatch* watch = nullptr;
   MemoryWatch* memory = nullptr;
   CallBook* calls = nullptr;
   std::shared_ptr<BufferPool> buffers;
@@ -42,6 +42,10 @@ struct ServiceParts {
 CallRecord BeginCall(const ServiceParts& parts, const char* method,
                      grpc::CallbackServerContext* context);
 
+// When a call has to be over, whatever the wall clock says; max() when it has
+// no deadline, or one of the next century.
+CallRecord::Clock::time_point DeadlineOf(
+    const grpc::CallbackServerContext& context);
 // The time that a call has left.
 Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context);
 

@@ -7,8 +7,6 @@
 namespace terrane::server {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::chrono::milliseconds kProgressInterval{500};
 
 }  // namespace
@@ -29,6 +27,7 @@ grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* PrepareCall::Start(
     }
     call->SetTimer();
   }
+  parts.watch->Add(call);
   parts.workers->Submit(std::move(share),
                         [call](core::TileScratch*) { call->Run(); });
   return call.get();
@@ -73,7 +72,7 @@ void PrepareCall::Run() {
         record_.method, 0,
         std::chrono::duration<double>(record_.generated).count());
   }
-  outcome_ = std::move(outcome);
+  if (!outcome_.has_value()) outcome_ = std::move(outcome);
   EndIfReady(std::move(lock));
 }
 
@@ -93,6 +92,7 @@ void PrepareCall::OnTimer() {
   SetTimer();
   if (writing_) return;
   writing_ = true;
+  write_began_ = Clock::now();
   message_.mutable_progress()->set_fraction(fraction_);
   // Once unlocked the call can end at any time, and then lets go of itself.
   const std::shared_ptr<PrepareCall> keep = self_;
@@ -101,7 +101,10 @@ void PrepareCall::OnTimer() {
 }
 
 void PrepareCall::EndIfReady(std::unique_lock<std::mutex> lock) {
-  if (finished_ || writing_ || running_ || !outcome_.has_value()) return;
+  if (finished_ || writing_ || running_ || cancelling_ ||
+      !outcome_.has_value()) {
+    return;
+  }
   finished_ = true;
   record_.status = outcome_->status();
   const grpc::Status status = ToGrpcStatus(record_.status, record_.request_id);
@@ -135,6 +138,23 @@ void PrepareCall::OnCancel() {
     record_.queued = Clock::now() - record_.begin;
     outcome_ = CancelStatus(*context_);
   }
+  EndIfReady(std::move(lock));
+}
+
+void PrepareCall::EndIfOverdue(const Overdue& overdue) {
+  {
+    std::lock_guard lock(mutex_);
+    if (finished_) return;
+    const bool stalled = writing_ && write_began_ <= overdue.waiting_since;
+    if (!stalled && deadline_ > overdue.deadline) return;
+    if (stalled) {
+      outcome_ = absl::AbortedError("the reader takes no message any more");
+    }
+    cancelling_ = true;
+  }
+  context_->TryCancel();  // a write fails; reactions may run in here
+  std::unique_lock lock(mutex_);
+  cancelling_ = false;
   EndIfReady(std::move(lock));
 }
 

@@ -29,7 +29,8 @@
 namespace terrane::server {
 
 class PrepareCall final
-    : public grpc::ServerWriteReactor<v1::PrepareTerrainResponse> {
+    : public grpc::ServerWriteReactor<v1::PrepareTerrainResponse>,
+      public WatchedCall {
  public:
   // `request` is gRPC's and lives until OnDone.
   static grpc::ServerWriteReactor<v1::PrepareTerrainResponse>* Start(
@@ -39,12 +40,16 @@ class PrepareCall final
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
   void OnDone() override;
+  void EndIfOverdue(const Overdue& overdue) override;
 
  private:
+  using Clock = CallRecord::Clock;
+
   PrepareCall(const ServiceParts& parts, grpc::CallbackServerContext* context,
               const v1::PrepareTerrainRequest* request)
       : parts_(parts),
         context_(context),
+        deadline_(DeadlineOf(*context)),
         request_(request),
         ticket_(parts.workers->NextTicket()),
         record_(BeginCall(parts, "PrepareTerrain", context)) {}
@@ -60,6 +65,7 @@ class PrepareCall final
 
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
+  const Clock::time_point deadline_;
   const v1::PrepareTerrainRequest* const request_;
   const std::uint64_t ticket_;  // its place among its client's calls
   std::stop_source stop_;
@@ -71,6 +77,8 @@ class PrepareCall final
   double fraction_ = 0;
   bool running_ = false;  // a worker is at it
   bool writing_ = false;
+  Clock::time_point write_began_;
+  bool cancelling_ = false;  // the watch ends it, and needs the context
   v1::PrepareTerrainResponse message_;  // of the write under way
   std::optional<absl::StatusOr<v1::PreparedTerrain>> outcome_;
   bool finished_ = false;

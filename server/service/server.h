@@ -47,6 +47,9 @@ struct ServerOptions {
   std::chrono::seconds patience{60};
   // A stream whose reader takes nothing for this time is ended.
   std::chrono::milliseconds stream_idle{60'000};
+  // A call that gRPC has not ended so long after its deadline is ended by the
+  // server's own clock.
+  std::chrono::milliseconds deadline_grace{1000};
   bool reflection = false;
   ConnectionLimits connections;
   TlsFiles tls;
@@ -99,7 +102,7 @@ class Server {
   StreamGate gate_;
   WorkerPool workers_;
   Admission admission_;
-  StallWatch stalls_;
+  CallWatch watch_;
   Linger linger_;
   Metrics metrics_;
   CallBook calls_;

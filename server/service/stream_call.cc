@@ -37,6 +37,7 @@ StreamCall::StreamCall(const ServiceParts& parts, const char* method,
                        std::unique_ptr<StreamSource> source)
     : parts_(parts),
       context_(context),
+      deadline_(DeadlineOf(*context)),
       call_ticket_(parts.workers->NextTicket()),
       source_(std::move(source)),
       record_(BeginCall(parts, method, context)) {}
@@ -67,7 +68,7 @@ void StreamCall::EnterGate() {
          [stream = keep, full] { stream->Refuse(Refusal::kStreams, full); }});
   }
   if (!ticket_.has_value()) return Refuse(Refusal::kStreams, full);
-  parts_.stalls->Add(keep);
+  parts_.watch->Add(keep);
 }
 
 void StreamCall::Refuse(Refusal reason, const absl::Status& refusal) {
@@ -250,11 +251,15 @@ void StreamCall::OnCancel() {
   Advance(std::move(lock));
 }
 
-void StreamCall::EndIfStalledSince(Clock::time_point moment) {
+void StreamCall::EndIfOverdue(const Overdue& overdue) {
   {
     std::lock_guard lock(mutex_);
-    if (!writing_ || write_began_ > moment || end_.has_value()) return;
-    EndWith(absl::AbortedError("the reader takes no message any more"));
+    if (finished_) return;
+    const bool stalled = writing_ && write_began_ <= overdue.waiting_since;
+    if (!stalled && deadline_ > overdue.deadline) return;
+    if (stalled) {
+      EndWith(absl::AbortedError("the reader takes no message any more"));
+    }
     cancelling_ = true;
   }
   context_->TryCancel();  // the write fails; reactions may run in here

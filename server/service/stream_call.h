@@ -31,7 +31,7 @@
 namespace terrane::server {
 
 class StreamCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
-                         public Stallable {
+                         public WatchedCall {
  public:
   static grpc::ServerWriteReactor<grpc::ByteBuffer>* Start(
       const ServiceParts& parts, const char* method,
@@ -41,7 +41,7 @@ class StreamCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
   void OnDone() override;
-  void EndIfStalledSince(std::chrono::steady_clock::time_point moment) override;
+  void EndIfOverdue(const Overdue& overdue) override;
 
  private:
   using Clock = CallRecord::Clock;
@@ -76,6 +76,7 @@ class StreamCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
 
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
+  const Clock::time_point deadline_;
   std::stop_source stop_;
   std::shared_ptr<StreamCall> self_;
 

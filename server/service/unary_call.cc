@@ -25,6 +25,7 @@ grpc::ServerUnaryReactor* UnaryCall::Start(const ServiceParts& parts,
     call->Refuse(admitted);
     return call.get();
   }
+  parts.watch->Add(call);
   parts.workers->Submit(std::move(share),
                         [call](core::TileScratch*) { call->Run(); });
   return call.get();
@@ -72,6 +73,10 @@ void UnaryCall::OnCancel() {
   }
   record_.queued = CallRecord::Clock::now() - record_.begin;
   End(CancelStatus(*context_));
+}
+
+void UnaryCall::EndIfOverdue(const Overdue& overdue) {
+  if (deadline_ <= overdue.deadline) OnCancel();
 }
 
 void UnaryCall::End(absl::Status status) {

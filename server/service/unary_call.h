@@ -24,7 +24,7 @@
 
 namespace terrane::server {
 
-class UnaryCall final : public grpc::ServerUnaryReactor {
+class UnaryCall final : public grpc::ServerUnaryReactor, public WatchedCall {
  public:
   // Fills in the response that gRPC gave the handler, and the record.
   using Handler = std::function<absl::Status(std::stop_token, CallRecord*)>;
@@ -36,6 +36,7 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
 
   void OnCancel() override;
   void OnDone() override;
+  void EndIfOverdue(const Overdue& overdue) override;
 
  private:
   enum class State { kQueued, kRunning, kFinished };
@@ -44,6 +45,7 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
             grpc::CallbackServerContext* context, Handler handler)
       : parts_(parts),
         context_(context),
+        deadline_(DeadlineOf(*context)),
         handler_(std::move(handler)),
         ticket_(parts.workers->NextTicket()),
         record_(BeginCall(parts, method, context)) {}
@@ -54,6 +56,7 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
 
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
+  const CallRecord::Clock::time_point deadline_;
   const Handler handler_;
   const std::uint64_t ticket_;  // its place among its client's calls
   std::stop_source stop_;

@@ -26,7 +26,7 @@ namespace terrane::server {
 
 template <typename Request, typename Response>
 class UploadCall final : public grpc::ServerReadReactor<Request>,
-                         public Stallable {
+                         public WatchedCall {
  public:
   static grpc::ServerReadReactor<Request>* Start(
       const ServiceParts& parts, const char* method,
@@ -36,7 +36,7 @@ class UploadCall final : public grpc::ServerReadReactor<Request>,
         new UploadCall(parts, method, context, response, std::move(upload)));
     call->self_ = call;
     if (call->record_.status.ok()) {
-      parts.stalls->Add(call);
+      parts.watch->Add(call);
       call->ReadNext();
     } else {
       call->End(call->record_.status);
@@ -70,12 +70,14 @@ class UploadCall final : public grpc::ServerReadReactor<Request>,
     self_.reset();
   }
 
-  void EndIfStalledSince(
-      std::chrono::steady_clock::time_point moment) override {
+  void EndIfOverdue(const Overdue& overdue) override {
     {
       std::lock_guard lock(mutex_);
-      if (!reading_since_.has_value() || *reading_since_ > moment) return;
-      stalled_ = true;
+      if (ended_) return;
+      const bool stalls = reading_since_.has_value() &&
+                          *reading_since_ <= overdue.waiting_since;
+      if (!stalls && deadline_ > overdue.deadline) return;
+      if (stalls) stalled_ = true;
       cancelling_ = true;
     }
     context_->TryCancel();  // the read fails; reactions may run in here
@@ -95,6 +97,7 @@ class UploadCall final : public grpc::ServerReadReactor<Request>,
              std::unique_ptr<Upload<Request, Response>> upload)
       : parts_(parts),
         context_(context),
+        deadline_(DeadlineOf(*context)),
         response_(response),
         record_(BeginCall(parts, method, context)),
         ticket_(parts.workers->NextTicket()),
@@ -157,6 +160,7 @@ class UploadCall final : public grpc::ServerReadReactor<Request>,
 
   const ServiceParts& parts_;
   grpc::CallbackServerContext* const context_;
+  const Clock::time_point deadline_;
   Response* const response_;
   CallRecord record_;
   const std::uint64_t ticket_;

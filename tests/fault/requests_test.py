@@ -18,7 +18,7 @@ from terrane.v1 import surface_pb2_grpc, terrain_pb2, terrain_recipe_pb2, tree_p
 
 INT64_MAX, INT32_MAX = 2**63 - 1, 2**31 - 1
 STREAM_TILES = "/terrane.v1.TerrainService/StreamTiles"
-UNIMPLEMENTED = "12"
+DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED, UNIMPLEMENTED = "4", "8", "12"
 # What memory may move by while nothing is allocated for a request.
 NOTHING_BYTES = 24 << 20
 
@@ -145,6 +145,24 @@ class BadNumbers(FaultTest):
                 self.assertIn(error.code(), {grpc.StatusCode.INVALID_ARGUMENT, grpc.StatusCode.INTERNAL,
                                              grpc.StatusCode.NOT_FOUND, grpc.StatusCode.RESOURCE_EXHAUSTED})
         self.assertGreater(refused, 100)
+
+
+class Deadlines(FaultTest):
+    def status_within(self, timeout):
+        client = Http2Client(self.server)
+        self.addCleanup(client.close)
+        request = tiles_request(window=(0, 0, 8, 8))
+        return client.call(STREAM_TILES, request.SerializeToString(), [("grpc-timeout", timeout)])[1]["grpc-status"]
+
+    def test_the_longest_that_can_be_said_is_none(self):
+        for timeout in ("2562047H", "2562048H", "99999999H"):  # nanoseconds end between the first two
+            with self.subTest(timeout=timeout):
+                self.assertEqual(self.status_within(timeout), "0")
+
+    def test_the_shortest_that_can_be_said_is_missed(self):
+        for timeout in ("0n", "1n", "00000001u"):
+            with self.subTest(timeout=timeout):
+                self.assertIn(self.status_within(timeout), (DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED))
 
 
 class LargeRequests(FaultTest):
