@@ -103,20 +103,37 @@ class StalledReaders(FaultTest):
         self.assertEqual(codes, {"OK": 10, "CANCELLED": 20})
 
 
+class ReaderOfAPreparation(FaultTest):
+    FLAGS = ("--workers", "1", "--stream-idle-seconds", "2")
+
+    def test_one_that_takes_nothing_is_cut(self):
+        # A line of 90,000 spot heights. The last ones in line have progress to tell.
+        request = terrain_pb2.PrepareTerrainRequest()
+        request.terrain.recipe.spots.level = 16
+        line = request.terrain.recipe.spots.lines.add(spacing=1)
+        for index in range(600):
+            line.vertices.add(x=300 * ((index + 1) // 2 % 2), y=index // 2)
+            line.heights.append(index % 7)
+        client = Http2Client(self.server, window=0)
+        self.addCleanup(client.close)
+        for seed in range(6):
+            request.terrain.recipe.seed = seed
+            client.start_call("/terrane.v1.TerrainService/PrepareTerrain", request.SerializeToString())
+        self.assertEqual(self.calls_in_log(1)[0]["code"], "ABORTED")
+
+
 class Deadlines(FaultTest):
     FLAGS = ("--workers", "1")
 
     def test_an_expired_stream_is_stopped(self):
-        # Cheap enough to be admitted; its reader is too slow for it.
-        stream = self.server.terrain(self.channel()).StreamTiles(
-            tiles_request(level=30, window=(0, 0, 3000, 3000), tile_size=100), timeout=6)
-        next(stream)
-        time.sleep(7)
-        with self.assertRaises(grpc.RpcError) as raised:
-            collections.deque(stream, maxlen=0)
-        self.assertEqual(raised.exception.code(), grpc.StatusCode.DEADLINE_EXCEEDED)
+        # Cheap enough to be admitted; its reader takes nothing, nor ends it.
+        client = Http2Client(self.server)
+        self.addCleanup(client.close)
+        request = tiles_request(level=30, window=(0, 0, 3000, 3000), tile_size=100)
+        client.start_call(STREAM_TILES, request.SerializeToString(), [("grpc-timeout", "4S")])
         (call,) = self.calls_in_log(1)
         self.assertEqual(call["code"], "DEADLINE_EXCEEDED")
+        self.assertGreater(call["total_ms"], 3900)
         self.assertGreater(call["tiles"], 0)
 
     def test_what_cannot_end_in_time_is_refused_at_once(self):

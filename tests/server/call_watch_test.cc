@@ -1,11 +1,13 @@
-// Calls that the server ends by its own clock. A watch that steps in an hour
-// before the deadline is told from gRPC, and from a client, which would not.
+// The watch alone, and calls that it ends. One that steps in an hour before the
+// deadline is told from gRPC, and from a client, which would not.
 #include "server/service/call_watch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -16,7 +18,43 @@
 namespace terrane::server {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr std::chrono::hours kHour{1};
+
+class NotingCall : public WatchedCall {
+ public:
+  void EndIfOverdue(const Overdue& overdue) override {
+    const Clock::time_point now = Clock::now();
+    deadline_age = now - overdue.deadline;
+    waiting_age = now - overdue.waiting_since;
+    ++looks;
+  }
+
+  std::atomic<int> looks = 0;
+  std::atomic<Clock::duration> deadline_age{};
+  std::atomic<Clock::duration> waiting_age{};
+};
+
+TEST(CallWatch, LooksAgainAndAgainAtWhatIsThere) {
+  CallWatch watch(kHour, std::chrono::milliseconds(100));
+  const auto stays = std::make_shared<NotingCall>();
+  auto goes = std::make_shared<NotingCall>();
+  watch.Add(stays);
+  watch.Add(goes);
+  ASSERT_TRUE(
+      Eventually([&] { return stays->looks >= 3 && goes->looks >= 3; }));
+  EXPECT_GE(stays->deadline_age.load(), kHour);
+  EXPECT_LT(stays->deadline_age.load(), 2 * kHour);
+  EXPECT_GE(stays->waiting_age.load(), std::chrono::milliseconds(100));
+  EXPECT_LT(stays->waiting_age.load(), kHour);
+  // The watch does not keep it.
+  const std::weak_ptr<NotingCall> gone = goes;
+  goes.reset();
+  EXPECT_TRUE(Eventually([&] { return gone.expired(); }));
+  const int before = stays->looks;
+  EXPECT_TRUE(Eventually([&] { return stays->looks > before + 1; }));
+}
 
 ServerOptions Hasty() {
   ServerOptions options = WithHttp();
@@ -24,7 +62,7 @@ ServerOptions Hasty() {
   return options;
 }
 
-class CallWatchTest : public ::testing::Test {
+class OverdueCallTest : public ::testing::Test {
  protected:
   static void SetDeadline(grpc::ClientContext* context) {
     context->set_deadline(std::chrono::system_clock::now() + kHour);
@@ -39,7 +77,7 @@ class CallWatchTest : public ::testing::Test {
   FakeActor actor_;
 };
 
-TEST_F(CallWatchTest, EndsAStreamWhoseReaderTakesNothing) {
+TEST_F(OverdueCallTest, EndsAStreamWhoseReaderTakesNothing) {
   actor_.tiles().tile_bytes = 8 << 20;
   Served served(&actor_, Hasty());
   grpc::ClientContext context;
@@ -50,7 +88,7 @@ TEST_F(CallWatchTest, EndsAStreamWhoseReaderTakesNothing) {
   EXPECT_TRUE(Ends(&served, "StreamTiles"));
 }
 
-TEST_F(CallWatchTest, EndsAStreamAtWork) {
+TEST_F(OverdueCallTest, EndsAStreamAtWork) {
   actor_.tiles().hold = true;
   Served served(&actor_, Hasty());
   grpc::ClientContext context;
@@ -62,7 +100,7 @@ TEST_F(CallWatchTest, EndsAStreamAtWork) {
   EXPECT_EQ(actor_.tiles().stopped, actor_.tiles().started);
 }
 
-TEST_F(CallWatchTest, EndsAPreparation) {
+TEST_F(OverdueCallTest, EndsAPreparation) {
   actor_.tiles().hold_preparation = true;
   Served served(&actor_, Hasty());
   grpc::ClientContext context;
@@ -73,7 +111,7 @@ TEST_F(CallWatchTest, EndsAPreparation) {
 }
 
 // The one worker is at the first of them.
-TEST_F(CallWatchTest, EndsUnaryCallsAtWorkAndInLine) {
+TEST_F(OverdueCallTest, EndsUnaryCallsAtWorkAndInLine) {
   actor_.tiles().hold = true;
   Served served(&actor_, Hasty());
   const auto ask = [&served] {
@@ -91,7 +129,7 @@ TEST_F(CallWatchTest, EndsUnaryCallsAtWorkAndInLine) {
   EXPECT_EQ(actor_.tiles().stopped, actor_.tiles().started);
 }
 
-TEST_F(CallWatchTest, EndsAnUpload) {
+TEST_F(OverdueCallTest, EndsAnUpload) {
   const std::unique_ptr<Actor> actor = MakeActor({}, 1);
   Served served(actor.get(), Hasty());
   grpc::ClientContext context;
@@ -101,7 +139,7 @@ TEST_F(CallWatchTest, EndsAnUpload) {
   EXPECT_TRUE(Ends(&served, "UploadRaster"));
 }
 
-TEST_F(CallWatchTest, LeavesCallsWithoutADeadlineAlone) {
+TEST_F(OverdueCallTest, LeavesCallsWithoutADeadlineAlone) {
   actor_.tiles().hold = true;
   Served served(&actor_, Hasty());
   grpc::ClientContext context;
