@@ -13,6 +13,7 @@
 #include "client/commands/command.h"
 #include "client/commands/flower_options.h"
 #include "client/commands/render_command.h"
+#include "client/commands/render_subject.h"
 #include "client/commands/render_traced.h"
 #include "client/commands/shared_options.h"
 #include "client/csv.h"
@@ -367,7 +368,9 @@ void AddRenderCommand(CLI::App* app, Action* action) {
       ->group("Surface");
   AddConnectionOptions(subcommand, &command->connection);
   subcommand->footer(kFooter);
-  subcommand->final_callback([command, action] {
+  subcommand->final_callback([command, subcommand, action] {
+    const absl::Status heeded = CheckOptionsAreHeeded(*subcommand, *command);
+    if (!heeded.ok()) throw CLI::ValidationError(std::string(heeded.message()));
     *action = [command](std::stop_token stop) { return Run(*command, stop); };
   });
 }

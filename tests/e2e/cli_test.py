@@ -394,6 +394,25 @@ class CliTest(unittest.TestCase):
             self.assertEqual(pixels.shape[0], 3)
             self.assertGreater(pixels.std(), 10, name)
 
+    def test_pictures_refuse_options_that_they_would_not_heed(self):
+        plot = self.folder / "plot.csv"
+        plot.write_text("x,height\n0,1\n1,2\n")
+        for subject, options in {
+            (DEM,): ["--preset=demo/hills", "--seed=1", "--level=3", "--passes=9", "--tilt=30", "--marks=1", "--size=9x9"],
+            (plot,): ["--band=1", "--style=grey", "--light=1,2", "--exaggeration=2", "--turn=3"],
+            ("--side-by-side", DEM, DEM): ["--water-level=1", "--style=relief", "--turn=3", "--show-spots"],
+            ("--preset=demo/hills",): ["--band=1", "--size=9x9", "--control-net", "--stage=1", "--height=99"],
+            ("--preset=demo/hills", "--style=traced"): ["--water-level=1", "--title=a", "--show-spots"],
+            ("--preset=surface/fig07",): ["--style=relief", "--level=3", "--roughness=0.5", "--passes=9"],
+            ("--preset=surface/fig07", "--style=traced"): ["--control-net", "--exaggeration=2"],
+            ("--preset=tree/plain",): ["--style=relief", "--size=9x9", "--exaggeration=2", "--plants=2"],
+            ("--preset=flower/rose",): ["--size=9x9", "--control-net", "--window=0,0,9,9", "--title=a"],
+        }.items():
+            for option in options:
+                done = self.run_terrane("render", *subject, option, "--local", "--out", self.folder / "a.png", expected=2)
+                self.assertIn(f"{option.split('=')[0]}: is of ", done.stderr)
+        self.assertEqual(self.names(), ["plot.csv"])
+
     def test_traced_pictures_are_the_same_from_the_server_and_locally(self):
         subjects = [
             ["--preset", "surface/fig07", "--size", "65x65", "--ground", "--shading", "blinn-phong"],

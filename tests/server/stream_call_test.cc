@@ -18,7 +18,6 @@ namespace {
 
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 using TileReader = grpc::ClientReader<v1::StreamTilesResponse>;
 
