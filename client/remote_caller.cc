@@ -25,6 +25,9 @@ bool WorthAnotherTry(const RemoteError& error, bool stream) {
       return true;
     case absl::StatusCode::kResourceExhausted:
       return error.retry_delay.has_value();
+    // Of a server that waited for too long for a reader that was suspended, or
+    // for its calls to end before it does.
+    case absl::StatusCode::kCancelled:
     // What a balancer answers when its backend dies, and a damaged tile.
     case absl::StatusCode::kUnknown:
     case absl::StatusCode::kInternal:
@@ -112,6 +115,11 @@ std::optional<absl::Status> RemoteCaller::BringBackTo(
 }
 
 absl::Status RemoteCaller::GivenUp(const absl::Status& status) const {
+  if (status.code() == absl::StatusCode::kCancelled) {
+    // Not by who asked for it.
+    return absl::AbortedError("server " + target_ + " ended the call: " +
+                              std::string(status.message()));
+  }
   if (status.code() != absl::StatusCode::kUnavailable) return status;
   return absl::UnavailableError("server " + target_ + " does not answer: " +
                                 std::string(status.message()));

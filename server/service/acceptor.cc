@@ -49,8 +49,9 @@ int PortOf(int fd) {
 }
 
 // A listening socket; `port` unless it is 0. Sockets accepted from it inherit
-// TCP_NODELAY.
-absl::StatusOr<Descriptor> ListeningSocket(const addrinfo& info, int port) {
+// the options of TCP.
+absl::StatusOr<Descriptor> ListeningSocket(
+    const addrinfo& info, int port, std::chrono::milliseconds stall_limit) {
   Descriptor socket_fd(
       socket(info.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!socket_fd.ok()) return SystemError("socket");
@@ -59,6 +60,9 @@ absl::StatusOr<Descriptor> ListeningSocket(const addrinfo& info, int port) {
   // Never SO_REUSEPORT: two servers on a port would share its calls at random.
   SetOption(fd, SOL_SOCKET, SO_REUSEADDR, 1);
   SetOption(fd, IPPROTO_TCP, TCP_NODELAY, 1);
+  // Counts while the peer's window is closed, too, which it acknowledges.
+  SetOption(fd, IPPROTO_TCP, TCP_USER_TIMEOUT,
+            static_cast<int>(stall_limit.count()));
   sockaddr_storage address{};
   std::memcpy(&address, info.ai_addr, info.ai_addrlen);
   if (port != 0) {
@@ -102,7 +106,8 @@ void Reset(Descriptor connection) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Acceptor>> Acceptor::Listen(
-    const std::string& address, int max_connections) {
+    const std::string& address, int max_connections,
+    std::chrono::milliseconds stall_limit) {
   const std::size_t colon = address.rfind(':');
   std::string host = address.substr(0, colon);
   const std::string port =
@@ -121,7 +126,7 @@ absl::StatusOr<std::unique_ptr<Acceptor>> Acceptor::Listen(
     host = host.substr(1, host.size() - 2);
   }
   std::unique_ptr<Acceptor> acceptor(new Acceptor(max_connections));
-  const absl::Status status = acceptor->ListenOn(host, port);
+  const absl::Status status = acceptor->ListenOn(host, port, stall_limit);
   if (!status.ok()) {
     return absl::UnavailableError("cannot listen on " + address + ": " +
                                   std::string(status.message()));
@@ -130,7 +135,8 @@ absl::StatusOr<std::unique_ptr<Acceptor>> Acceptor::Listen(
 }
 
 absl::Status Acceptor::ListenOn(const std::string& host,
-                                const std::string& port) {
+                                const std::string& port,
+                                std::chrono::milliseconds stall_limit) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
@@ -141,7 +147,7 @@ absl::Status Acceptor::ListenOn(const std::string& host,
                                                                  freeaddrinfo);
   absl::Status problem;
   for (const addrinfo* info = found; info != nullptr; info = info->ai_next) {
-    auto socket_fd = ListeningSocket(*info, port_);
+    auto socket_fd = ListeningSocket(*info, port_, stall_limit);
     if (socket_fd.ok()) {
       port_ = PortOf(socket_fd->get());
       listeners_.push_back(*std::move(socket_fd));

@@ -25,6 +25,7 @@
 #define TERRANE_SERVER_SERVICE_ACCEPTOR_H_
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -48,10 +49,13 @@ class Acceptor {
 
   // Binds and listens; nothing is accepted yet. `address` is HOST:PORT or
   // [IPV6]:PORT; port 0 takes a free one; a name stands for all its addresses.
+  // A connection whose peer takes nothing of what was sent for `stall_limit` is
+  // ended by the kernel: gRPC cannot cancel a call while it waits for a socket.
   // Errors: INVALID_ARGUMENT for another form, UNAVAILABLE when the address
   // cannot be listened on.
   static absl::StatusOr<std::unique_ptr<Acceptor>> Listen(
-      const std::string& address, int max_connections);
+      const std::string& address, int max_connections,
+      std::chrono::milliseconds stall_limit);
   ~Acceptor();
   Acceptor(const Acceptor&) = delete;
   Acceptor& operator=(const Acceptor&) = delete;
@@ -75,7 +79,8 @@ class Acceptor {
  private:
   explicit Acceptor(int max_connections) : max_connections_(max_connections) {}
 
-  absl::Status ListenOn(const std::string& host, const std::string& port);
+  absl::Status ListenOn(const std::string& host, const std::string& port,
+                        std::chrono::milliseconds stall_limit);
   void Run();
   // True unless accepting has to pause for want of descriptors.
   bool AcceptFrom(int listener);

@@ -81,7 +81,10 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   std::unique_ptr<Server> server(
       new Server(options, *std::move(access), actor, log));
   const int wanted = options.connections.max_connections;
-  auto acceptor = Acceptor::Listen(options.listen, FitConnections(wanted));
+  // Later than the watch, which knows why, and whose cancelling waits for it.
+  const std::chrono::milliseconds connection_idle = options.stream_idle * 3 / 2;
+  auto acceptor =
+      Acceptor::Listen(options.listen, FitConnections(wanted), connection_idle);
   if (!acceptor.ok()) return acceptor.status();
   server->acceptor_ = *std::move(acceptor);
   const int most = server->acceptor_->max_connections();

@@ -352,7 +352,8 @@ TEST_P(ResumeOfTest, BringsTheSameBytes) {
 INSTANTIATE_TEST_SUITE_P(
     , ResumeOfTest,
     testing::Combine(testing::ValuesIn(kKinds),
-                     testing::Values(grpc::StatusCode::UNKNOWN,
+                     testing::Values(grpc::StatusCode::CANCELLED,
+                                     grpc::StatusCode::UNKNOWN,
                                      grpc::StatusCode::INTERNAL,
                                      grpc::StatusCode::UNAVAILABLE)),
     [](const auto& test) {

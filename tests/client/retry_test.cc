@@ -102,6 +102,14 @@ TEST_F(RetryTest, UnaryCallThatTheServerBrokeIsNotTriedAgain) {
   EXPECT_THAT(waits_, IsEmpty());
 }
 
+TEST_F(RetryTest, CallThatTheServerEndedIsNoInterrupt) {
+  faulty_.preset_status = {grpc::StatusCode::CANCELLED, "enough"};
+  const absl::Status status = GetPreset();
+  EXPECT_EQ(status.code(), absl::StatusCode::kAborted);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("enough"));
+  EXPECT_EQ(faulty_.preset_calls, 1);
+}
+
 TEST_F(RetryTest, ClientsDoNotReturnTogether) {
   faulty_.preset_status = ComeBackAfter(milliseconds(100));
   std::set<milliseconds> first_waits;

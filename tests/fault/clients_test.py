@@ -103,6 +103,23 @@ class StalledReaders(FaultTest):
         self.assertEqual(codes, {"OK": 10, "CANCELLED": 20})
 
 
+class ReadersThatAreCut(FaultTest):
+    FLAGS = ("--stream-idle-seconds", "2")
+
+    def test_one_that_opens_no_window_is_cut(self):
+        client = Http2Client(self.server)
+        self.addCleanup(client.close)
+        client.start_call(STREAM_TILES, endless_request().SerializeToString())
+        self.assertEqual(self.calls_in_log(1)[0]["code"], "ABORTED")
+
+    def test_one_whose_socket_is_full_is_cut(self):
+        client = Http2Client(self.server, window=2**31 - 1)
+        self.addCleanup(client.close)
+        client.start_call(STREAM_TILES, endless_request().SerializeToString())
+        self.assertEqual(self.calls_in_log(1)[0]["code"], "ABORTED")
+        self.assertTrue(client.is_cut())
+
+
 class ReaderOfAPreparation(FaultTest):
     FLAGS = ("--workers", "1", "--stream-idle-seconds", "2")
 

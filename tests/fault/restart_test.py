@@ -149,7 +149,7 @@ class GentleEnd(TimedTest):
 ATTEMPTS = 5
 
 
-class KilledServer(TimedTest):
+class ClientMidStream(TimedTest):
     CHOICE = ["terrain", "--seed", "11", "--level", "30", "--window", "0,0,4096,4096", "--tile-size", "256"]
 
     def setUp(self):
@@ -158,15 +158,20 @@ class KilledServer(TimedTest):
         self.addCleanup(temporary.cleanup)
         self.folder = pathlib.Path(temporary.name)
 
-    def client_of_a_killed_server(self, out):
-        """A client whose server was killed when the first tile had come, and the address of that server.
-        The client is stopped: it would give up after some seconds, which a new server may need to start."""
-        server = self.start_server("--workers", "1")
+    def start_client(self, server, out):
+        """A client that has its first tile."""
         client = subprocess.Popen([TERRANE, *self.CHOICE, "--server", server.address, "--out", out, "--progress", "json"],
                                   stderr=subprocess.PIPE, text=True)
         self.addCleanup(client.stderr.close)
         self.addCleanup(client.kill)
-        client.stderr.readline()  # printed with the first tile
+        client.stderr.readline()  # printed with it
+        return client
+
+    def client_of_a_killed_server(self, out):
+        """A client whose server was killed when the first tile had come, and the address of that server.
+        The client is stopped: it would give up after some seconds, which a new server may need to start."""
+        server = self.start_server("--workers", "1")
+        client = self.start_client(server, out)
         client.send_signal(signal.SIGSTOP)
         server.kill()
         return client, server.address
@@ -182,6 +187,21 @@ class KilledServer(TimedTest):
                 break
         (call,) = second.calls()
         self.assertLess(call["tiles"], 256)  # only what was missing
+        subprocess.run([TERRANE, *self.CHOICE, "--local", "--out", alone], check=True, capture_output=True)
+        self.assertTrue(filecmp.cmp(out, alone, shallow=False))
+
+    def test_a_client_that_was_suspended_for_too_long_goes_on(self):
+        out, alone = self.folder / "resumed.f32", self.folder / "alone.f32"
+        for _ in range(ATTEMPTS):
+            server = self.start_server("--stream-idle-seconds", "1")
+            client = self.start_client(server, out)
+            client.send_signal(signal.SIGSTOP)
+            self.assertTrue(wait_until(server.calls), "the reader is still waited for")
+            client.send_signal(signal.SIGCONT)
+            self.assertEqual(client.wait(PATIENCE_SECONDS), 0, client.stderr.read())
+            if server.calls()[0]["code"] == "ABORTED":
+                break
+        self.assertTrue(wait_until(lambda: [call["code"] for call in server.calls()] == ["ABORTED", "OK"]), server.calls())
         subprocess.run([TERRANE, *self.CHOICE, "--local", "--out", alone], check=True, capture_output=True)
         self.assertTrue(filecmp.cmp(out, alone, shallow=False))
 

@@ -24,6 +24,8 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
+constexpr std::chrono::seconds kStallLimit{60};
+
 // A connected socket; not ok when nobody listens.
 Descriptor Connect(int port) {
   sockaddr_in address{};
@@ -79,7 +81,8 @@ class Owner {
 class AcceptorTest : public testing::Test {
  protected:
   void Start(int max_connections) {
-    auto acceptor = Acceptor::Listen("127.0.0.1:0", max_connections);
+    auto acceptor =
+        Acceptor::Listen("127.0.0.1:0", max_connections, kStallLimit);
     ASSERT_TRUE(acceptor.ok()) << acceptor.status();
     acceptor_ = *std::move(acceptor);
     acceptor_->Start([this](int fd) { owner_.Take(fd); });
@@ -185,23 +188,23 @@ TEST_F(AcceptorTest, StopClosesTheDoorButNoConnection) {
 
 TEST(AcceptorListen, TakesNumbersAndNames) {
   for (const char* address : {"127.0.0.1:0", "localhost:0", "0.0.0.0:0"}) {
-    const auto acceptor = Acceptor::Listen(address, 1);
+    const auto acceptor = Acceptor::Listen(address, 1, kStallLimit);
     ASSERT_TRUE(acceptor.ok()) << acceptor.status();
     EXPECT_TRUE(Connect((*acceptor)->port()).ok()) << address;
   }
 }
 
 TEST(AcceptorListen, TakesIpv6) {
-  const auto acceptor = Acceptor::Listen("[::1]:0", 1);
+  const auto acceptor = Acceptor::Listen("[::1]:0", 1, kStallLimit);
   if (!acceptor.ok()) GTEST_SKIP() << "without IPv6: " << acceptor.status();
   EXPECT_GT((*acceptor)->port(), 0);
 }
 
 TEST(AcceptorListen, TakenPortIsAnError) {
-  const auto first = Acceptor::Listen("127.0.0.1:0", 1);
+  const auto first = Acceptor::Listen("127.0.0.1:0", 1, kStallLimit);
   ASSERT_TRUE(first.ok());
   const std::string address = "127.0.0.1:" + std::to_string((*first)->port());
-  const auto second = Acceptor::Listen(address, 1);
+  const auto second = Acceptor::Listen(address, 1, kStallLimit);
   EXPECT_EQ(second.status().code(), absl::StatusCode::kUnavailable);
   EXPECT_THAT(std::string(second.status().message()),
               HasSubstr("cannot listen on " + address));
@@ -210,7 +213,7 @@ TEST(AcceptorListen, TakenPortIsAnError) {
 TEST(AcceptorListen, OtherFormsAreRefused) {
   for (const char* address : {"", "127.0.0.1", ":80", "127.0.0.1:", "a:65536",
                               "a:-1", "a:http", "unix:/socket"}) {
-    EXPECT_EQ(Acceptor::Listen(address, 1).status().code(),
+    EXPECT_EQ(Acceptor::Listen(address, 1, kStallLimit).status().code(),
               absl::StatusCode::kInvalidArgument)
         << address;
   }
