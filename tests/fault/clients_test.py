@@ -116,7 +116,8 @@ class ReadersThatAreCut(FaultTest):
         client = Http2Client(self.server, window=2**31 - 1)
         self.addCleanup(client.close)
         client.start_call(STREAM_TILES, endless_request().SerializeToString())
-        self.assertEqual(self.calls_in_log(1)[0]["code"], "ABORTED")
+        # CANCELLED where the kernel was faster than a watch that got no processor.
+        self.assertIn(self.calls_in_log(1)[0]["code"], ("ABORTED", "CANCELLED"))
         self.assertTrue(client.is_cut())
 
 
@@ -136,7 +137,8 @@ class ReaderOfAPreparation(FaultTest):
         for seed in range(6):
             request.terrain.recipe.seed = seed
             client.start_call("/terrane.v1.TerrainService/PrepareTerrain", request.SerializeToString())
-        self.assertEqual(self.calls_in_log(1)[0]["code"], "ABORTED")
+        self.assertTrue(wait_until(lambda: "ABORTED" in [call["code"] for call in self.server.calls()]),
+                        self.server.calls())
 
 
 class Deadlines(FaultTest):

@@ -199,9 +199,13 @@ class ClientMidStream(TimedTest):
             self.assertTrue(wait_until(server.calls), "the reader is still waited for")
             client.send_signal(signal.SIGCONT)
             self.assertEqual(client.wait(PATIENCE_SECONDS), 0, client.stderr.read())
-            if server.calls()[0]["code"] == "ABORTED":
+            if server.calls()[0]["code"] != "OK":
                 break
-        self.assertTrue(wait_until(lambda: [call["code"] for call in server.calls()] == ["ABORTED", "OK"]), server.calls())
+        self.assertTrue(wait_until(lambda: server.calls()[-1]["code"] == "OK"), server.calls())
+        # Cut once; more often where the machine stood still, too.
+        cuts = {call["code"] for call in server.calls()[:-1]}
+        self.assertTrue(cuts)
+        self.assertLessEqual(cuts, {"ABORTED", "CANCELLED"})
         subprocess.run([TERRANE, *self.CHOICE, "--local", "--out", alone], check=True, capture_output=True)
         self.assertTrue(filecmp.cmp(out, alone, shallow=False))
 
