@@ -70,6 +70,27 @@ Shown ShownBy(const RenderCommand& command) {
   return {subject(), IsTraced(command), command.style};
 }
 
+bool IsGenerated(const Shown& shown) { return !shown.IsFile(); }
+
+bool HasStyles(const Shown& shown) {
+  if (shown.style == v1::RENDER_STYLE_TRACED) return true;
+  return shown.Is({Subject::kRaster, Subject::kTerrain}) ||
+         (shown.subject == Subject::kSurface &&
+          shown.style == v1::RENDER_STYLE_PERSPECTIVE);
+}
+
+bool IsSeenFromTheSide(const Shown& shown) {
+  return !shown.IsFile() || (shown.subject == Subject::kRaster &&
+                             shown.style == v1::RENDER_STYLE_PERSPECTIVE);
+}
+
+// A terrain may have one dimension.
+bool MayBePlotted(const Shown& shown) {
+  return !shown.traced && shown.Is({Subject::kProfile, Subject::kTerrain});
+}
+
+bool IsTerrain(const Shown& shown) { return shown.Is({Subject::kTerrain}); }
+
 // Of an option or, behind those, of a group of them: what it is for.
 struct Rule {
   std::string_view name;
@@ -78,20 +99,13 @@ struct Rule {
 };
 
 constexpr Rule kRules[] = {
-    {"--preset", "what is generated",
-     [](const Shown& s) { return !s.IsFile(); }},
-    {"--seed", "what is generated", [](const Shown& s) { return !s.IsFile(); }},
+    {"--preset", "what is generated", IsGenerated},
+    {"--seed", "what is generated", IsGenerated},
     {"--band", "rasters",
      [](const Shown& s) {
        return s.Is({Subject::kRaster, Subject::kSideBySide});
      }},
-    {"--style", "terrains, rasters and traced pictures",
-     [](const Shown& s) {
-       if (s.style == v1::RENDER_STYLE_TRACED) return true;
-       return s.Is({Subject::kRaster, Subject::kTerrain}) ||
-              (s.subject == Subject::kSurface &&
-               s.style == v1::RENDER_STYLE_PERSPECTIVE);
-     }},
+    {"--style", "terrains, rasters and traced pictures", HasStyles},
     {"--exaggeration", "terrains, rasters and surfaces that are not traced",
      [](const Shown& s) {
        return s.Is({Subject::kRaster, Subject::kSideBySide,
@@ -103,34 +117,18 @@ constexpr Rule kRules[] = {
        return !s.traced &&
               s.Is({Subject::kRaster, Subject::kProfile, Subject::kTerrain});
      }},
-    {"--marks", "profiles",
-     [](const Shown& s) {
-       return !s.traced && s.Is({Subject::kProfile, Subject::kTerrain});
-     }},
-    {"--title", "profiles",
-     [](const Shown& s) {
-       return !s.traced && s.Is({Subject::kProfile, Subject::kTerrain});
-     }},
+    {"--marks", "profiles", MayBePlotted},
+    {"--title", "profiles", MayBePlotted},
     {"--show-spots", "terrains that are not traced",
-     [](const Shown& s) { return !s.traced && s.Is({Subject::kTerrain}); }},
+     [](const Shown& s) { return !s.traced && IsTerrain(s); }},
     {"--light", "what is lit",
      [](const Shown& s) { return !s.Is({Subject::kProfile}); }},
-    {"--turn", "views in perspective",
-     [](const Shown& s) {
-       return !s.IsFile() || (s.subject == Subject::kRaster &&
-                              s.style == v1::RENDER_STYLE_PERSPECTIVE);
-     }},
-    {"--tilt", "views in perspective",
-     [](const Shown& s) {
-       return !s.IsFile() || (s.subject == Subject::kRaster &&
-                              s.style == v1::RENDER_STYLE_PERSPECTIVE);
-     }},
+    {"--turn", "views in perspective", IsSeenFromTheSide},
+    {"--tilt", "views in perspective", IsSeenFromTheSide},
     {"--control-net", "surfaces that are not traced",
      [](const Shown& s) { return !s.traced && s.Is({Subject::kSurface}); }},
-    {"Terrain", "terrains",
-     [](const Shown& s) { return s.Is({Subject::kTerrain}); }},
-    {"Samples", "terrains",
-     [](const Shown& s) { return s.Is({Subject::kTerrain}); }},
+    {"Terrain", "terrains", IsTerrain},
+    {"Samples", "terrains", IsTerrain},
     {"Surface", "surfaces",
      [](const Shown& s) { return s.Is({Subject::kSurface}); }},
     {"Flower", "flowers",

@@ -167,11 +167,14 @@ void AddTracedOptions(CLI::App* command, TracedOptions* options) {
 }
 
 absl::Status WriteTraced(const RenderCommand& command, std::stop_token stop) {
-  if (!command.input.empty()) {
+  const std::string& file = command.side_by_side.empty()
+                                ? command.input
+                                : command.side_by_side.front();
+  if (!file.empty()) {
     return absl::InvalidArgumentError(
         "--style traced: must be of a preset, a recipe or a net, got the "
         "file " +
-        command.input);
+        file);
   }
   const std::unique_ptr<Backend> backend = MakeBackend(command.connection);
   absl::StatusOr<v1::StreamRenderRequest> request =

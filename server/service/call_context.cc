@@ -80,8 +80,7 @@ Clock::time_point DeadlineOf(const grpc::CallbackServerContext& context) {
          std::chrono::nanoseconds(left.tv_nsec);
 }
 
-Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context) {
-  const Clock::time_point deadline = DeadlineOf(context);
+Admission::TimeLeft TimeLeft(Clock::time_point deadline) {
   if (deadline == Clock::time_point::max()) return std::nullopt;
   return deadline - Clock::now();
 }
@@ -91,14 +90,13 @@ absl::Status ShortOfMemoryError() {
                          std::chrono::seconds(1));
 }
 
-absl::Status AdmitTask(const ServiceParts& parts,
-                       const grpc::CallbackServerContext& context,
+absl::Status AdmitTask(const ServiceParts& parts, Clock::time_point deadline,
                        bool takes_memory, Work* work, CallRecord* record) {
   if (takes_memory && parts.memory->Tight()) {
     record->refusal = Refusal::kMemory;
     return ShortOfMemoryError();
   }
-  const Admission::TimeLeft left = TimeLeft(context);
+  const Admission::TimeLeft left = TimeLeft(deadline);
   record->estimated_seconds =
       parts.admission->prices().Price(record->method, 0);
   work->client = record->client;
@@ -117,11 +115,11 @@ void AddPushback(const absl::Status& status,
   }
 }
 
-absl::Status CancelStatus(const grpc::CallbackServerContext& context) {
+absl::Status CancelStatus(Clock::time_point deadline) {
   // A client whose time is up cancels by itself, and that may come a moment
   // before the server's own clock says so.
   constexpr std::chrono::milliseconds kMoment{100};
-  return DeadlineOf(context) <= Clock::now() + kMoment
+  return deadline <= Clock::now() + kMoment
              ? absl::DeadlineExceededError("the deadline has passed")
              : absl::CancelledError("the client cancelled the call");
 }

@@ -46,8 +46,8 @@ CallRecord BeginCall(const ServiceParts& parts, const char* method,
 // no deadline, or one of the next century.
 CallRecord::Clock::time_point DeadlineOf(
     const grpc::CallbackServerContext& context);
-// The time that a call has left.
-Admission::TimeLeft TimeLeft(const grpc::CallbackServerContext& context);
+// The time that a call has left until then.
+Admission::TimeLeft TimeLeft(CallRecord::Clock::time_point deadline);
 
 // The refusal of a call while memory is tight.
 absl::Status ShortOfMemoryError();
@@ -57,7 +57,7 @@ absl::Status ShortOfMemoryError();
 // expected to end in time at the average price of its method. Fills in the rest
 // of `work`, and the refusal.
 absl::Status AdmitTask(const ServiceParts& parts,
-                       const grpc::CallbackServerContext& context,
+                       CallRecord::Clock::time_point deadline,
                        bool takes_memory, Work* work, CallRecord* record);
 
 // Tells the client's library when to come back, if the status says so.
@@ -65,7 +65,7 @@ void AddPushback(const absl::Status& status,
                  grpc::CallbackServerContext* context);
 
 // The status of a call that gRPC cancelled: by the client, or by its deadline.
-absl::Status CancelStatus(const grpc::CallbackServerContext& context);
+absl::Status CancelStatus(CallRecord::Clock::time_point deadline);
 
 }  // namespace terrane::server
 

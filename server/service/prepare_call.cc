@@ -40,7 +40,7 @@ absl::Status PrepareCall::Admit(Work* share) {
   share->work_class = WorkClass::kBatch;
   share->ticket = ticket_;
   const absl::Status status =
-      AdmitTask(parts_, *context_, true, share, &record_);
+      AdmitTask(parts_, deadline_, true, share, &record_);
   AddPushback(status, context_);
   return status;
 }
@@ -60,7 +60,7 @@ void PrepareCall::Run() {
       },
       stop_.get_token());
   // The core knows that it was stopped, the call knows why.
-  if (absl::IsCancelled(outcome.status())) outcome = CancelStatus(*context_);
+  if (absl::IsCancelled(outcome.status())) outcome = CancelStatus(deadline_);
 
   std::unique_lock lock(mutex_);
   running_ = false;
@@ -136,7 +136,7 @@ void PrepareCall::OnCancel() {
   std::unique_lock lock(mutex_);
   if (!running_ && !outcome_.has_value()) {
     record_.queued = Clock::now() - record_.begin;
-    outcome_ = CancelStatus(*context_);
+    outcome_ = CancelStatus(deadline_);
   }
   EndIfReady(std::move(lock));
 }

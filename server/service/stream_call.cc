@@ -52,7 +52,7 @@ void StreamCall::EnterGate() {
     return Refuse(Refusal::kMemory, ShortOfMemoryError());
   }
   const Work arriving = Arriving();
-  const auto admitted = parts_.admission->Admit(arriving, TimeLeft(*context_));
+  const auto admitted = parts_.admission->Admit(arriving, TimeLeft(deadline_));
   if (!admitted.ok()) return Refuse(Refusal::kDeadline, admitted.status());
   parts_.workers->SetBacklog(arriving);
   const absl::Status full =
@@ -87,7 +87,7 @@ Work StreamCall::Arriving() const {
   work.client = record_.client;
   work.ticket = work.call = call_ticket_;
   work.seconds = Admission::Credible(
-      parts_.admission->prices().Typical(record_.method), TimeLeft(*context_));
+      parts_.admission->prices().Typical(record_.method), TimeLeft(deadline_));
   return work;
 }
 
@@ -136,7 +136,7 @@ absl::Status StreamCall::Price() {
   const Work work = NextWork();
   parts_.workers->SetBacklog(work);
   waited_before_ = record_.queued + record_.generated;
-  const auto admitted = parts_.admission->Admit(work, TimeLeft(*context_));
+  const auto admitted = parts_.admission->Admit(work, TimeLeft(deadline_));
   expected_ = admitted.value_or(Expectation());
   return admitted.status();
 }
@@ -173,7 +173,7 @@ void StreamCall::RunTask(core::TileScratch* scratch) {
     all_made_ = source_->AllMade();
   } else {
     // The core knows that it was stopped, the call knows why.
-    EndWith(absl::IsCancelled(made.status()) ? CancelStatus(*context_)
+    EndWith(absl::IsCancelled(made.status()) ? CancelStatus(deadline_)
                                              : made.status());
   }
   Advance(std::move(lock));
@@ -237,7 +237,7 @@ void StreamCall::OnWriteDone(bool ok) {
   std::unique_lock lock(mutex_);
   writing_ = false;
   sending_ += Clock::now() - write_began_;
-  if (!ok) EndWith(CancelStatus(*context_));
+  if (!ok) EndWith(CancelStatus(deadline_));
   Advance(std::move(lock));
 }
 
@@ -247,7 +247,7 @@ void StreamCall::OnCancel() {
   if (queued_since_.has_value() && !end_.has_value()) {
     record_.queued += Clock::now() - *queued_since_;
   }
-  EndWith(CancelStatus(*context_));
+  EndWith(CancelStatus(deadline_));
   Advance(std::move(lock));
 }
 

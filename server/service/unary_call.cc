@@ -20,7 +20,7 @@ grpc::ServerUnaryReactor* UnaryCall::Start(const ServiceParts& parts,
   Work share;
   share.ticket = call->ticket_;
   const absl::Status admitted =
-      AdmitTask(parts, *context, generates, &share, &record);
+      AdmitTask(parts, call->deadline_, generates, &share, &record);
   if (!admitted.ok()) {
     call->Refuse(admitted);
     return call.get();
@@ -61,7 +61,7 @@ void UnaryCall::Run() {
         std::chrono::duration<double>(record_.generated).count());
   }
   // The core knows that it was stopped, the call knows why.
-  End(absl::IsCancelled(status) ? CancelStatus(*context_) : status);
+  End(absl::IsCancelled(status) ? CancelStatus(deadline_) : status);
 }
 
 void UnaryCall::OnCancel() {
@@ -72,7 +72,7 @@ void UnaryCall::OnCancel() {
     state_ = State::kFinished;
   }
   record_.queued = CallRecord::Clock::now() - record_.begin;
-  End(CancelStatus(*context_));
+  End(CancelStatus(deadline_));
 }
 
 void UnaryCall::EndIfOverdue(const Overdue& overdue) {

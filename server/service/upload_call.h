@@ -133,7 +133,7 @@ class UploadCall final : public grpc::ServerReadReactor<Request>,
     if (stalled_) {
       return End(absl::AbortedError("the client sends nothing any more"));
     }
-    if (context_->IsCancelled()) return End(CancelStatus(*context_));
+    if (context_->IsCancelled()) return End(CancelStatus(deadline_));
     absl::StatusOr<Response> response = upload_->Finish();
     record_.generated += Clock::now() - start;
     if (!response.ok()) return End(response.status());

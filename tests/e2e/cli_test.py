@@ -411,6 +411,8 @@ class CliTest(unittest.TestCase):
             for option in options:
                 done = self.run_terrane("render", *subject, option, "--local", "--out", self.folder / "a.png", expected=2)
                 self.assertIn(f"{option.split('=')[0]}: is of ", done.stderr)
+        done = self.run_terrane("render", "--side-by-side", DEM, DEM, "--style=traced", "--out", self.folder / "a.png", expected=1)
+        self.assertIn("--style traced: must be of a preset", done.stderr)
         self.assertEqual(self.names(), ["plot.csv"])
 
     def test_traced_pictures_are_the_same_from_the_server_and_locally(self):

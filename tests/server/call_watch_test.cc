@@ -74,6 +74,13 @@ class OverdueCallTest : public ::testing::Test {
     });
   }
 
+  static std::unique_ptr<grpc::ClientReader<v1::StreamTilesResponse>> Stream(
+      Served* served, int tiles, grpc::ClientContext* context) {
+    v1::StreamTilesRequest request;
+    request.set_tile_size(tiles);  // the fake actor's number of them
+    return served->terrain->StreamTiles(context, request);
+  }
+
   FakeActor actor_;
 };
 
@@ -82,9 +89,7 @@ TEST_F(OverdueCallTest, EndsAStreamWhoseReaderTakesNothing) {
   Served served(&actor_, Hasty());
   grpc::ClientContext context;
   SetDeadline(&context);
-  v1::StreamTilesRequest request;
-  request.set_tile_size(100);
-  const auto reader = served.terrain->StreamTiles(&context, request);
+  const auto reader = Stream(&served, 100, &context);
   EXPECT_TRUE(Ends(&served, "StreamTiles"));
 }
 
@@ -93,9 +98,7 @@ TEST_F(OverdueCallTest, EndsAStreamAtWork) {
   Served served(&actor_, Hasty());
   grpc::ClientContext context;
   SetDeadline(&context);
-  v1::StreamTilesRequest request;
-  request.set_tile_size(1);
-  const auto reader = served.terrain->StreamTiles(&context, request);
+  const auto reader = Stream(&served, 1, &context);
   EXPECT_TRUE(Ends(&served, "StreamTiles"));
   EXPECT_EQ(actor_.tiles().stopped, actor_.tiles().started);
 }
@@ -144,12 +147,10 @@ TEST_F(OverdueCallTest, LeavesCallsWithoutADeadlineAlone) {
   Served served(&actor_, Hasty());
   grpc::ClientContext context;
   SetDeadline(&context);
-  v1::StreamTilesRequest request;
-  request.set_tile_size(1);
   grpc::ClientContext endless;
-  const auto stays = served.terrain->StreamTiles(&endless, request);
+  const auto stays = Stream(&served, 1, &endless);
   ASSERT_TRUE(Eventually([this] { return actor_.tiles().started == 1; }));
-  const auto goes = served.terrain->StreamTiles(&context, request);
+  const auto goes = Stream(&served, 1, &context);
   EXPECT_TRUE(Ends(&served, "StreamTiles"));
   EXPECT_EQ(actor_.tiles().stopped, 0);
 }
